@@ -1,0 +1,48 @@
+# What the three libraries need: used by this project's own build and, installed, by find_package(ricci). Debian
+# packages only; docs/dependencies.md says which, under what licence, and why.
+#
+# The includer defines ricci_find(...), which is find_package or find_dependency, and RICCI_CHOLMOD. The interface
+# targets are imported ones, so that the exported libraries refer to them by name and the consumer's own machine
+# says where things lie.
+ricci_find(Eigen3 3.4 NO_MODULE)
+ricci_find(TBB)
+ricci_find(ZLIB)
+ricci_find(OpenMesh CONFIG)
+ricci_find(nanoflann)
+ricci_find(nlohmann_json)
+ricci_find(fmt)
+find_path(HDF5_INCLUDE_DIR hdf5.h PATH_SUFFIXES hdf5/serial REQUIRED)
+find_library(HDF5_C_LIBRARY NAMES hdf5_serial hdf5 PATH_SUFFIXES hdf5/serial REQUIRED)
+find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
+find_library(XXHASH_LIBRARY xxhash REQUIRED)
+
+add_library(ricci_io_dependencies INTERFACE IMPORTED)
+target_include_directories(ricci_io_dependencies SYSTEM INTERFACE ${HDF5_INCLUDE_DIR} ${XXHASH_INCLUDE_DIR})
+target_link_libraries(ricci_io_dependencies INTERFACE
+    ${HDF5_C_LIBRARY} ZLIB::ZLIB ${XXHASH_LIBRARY} fmt::fmt nlohmann_json::nlohmann_json)
+
+add_library(ricci_engine_dependencies INTERFACE IMPORTED)
+target_link_libraries(ricci_engine_dependencies INTERFACE fmt::fmt OpenMeshCore OpenMeshTools nanoflann::nanoflann)
+
+if(RICCI_CHOLMOD)
+    find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
+    find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
+    target_include_directories(ricci_engine_dependencies SYSTEM INTERFACE ${CHOLMOD_INCLUDE_DIR})
+    target_link_libraries(ricci_engine_dependencies INTERFACE ${CHOLMOD_LIBRARY})
+    target_compile_definitions(ricci_engine_dependencies INTERFACE RICCI_HAS_CHOLMOD=1)
+    # CHOLMOD asks for whatever libblas.so.3 the machine prefers. Linked directly, and found by run path, the serial
+    # OpenBLAS is loaded first and wins even where a threaded one is the machine's default. Named twice: plainly for
+    # the run path, and in one flag that keeps a linker from dropping what only CHOLMOD calls.
+    find_library(RICCI_SERIAL_LAPACK lapack PATH_SUFFIXES openblas-serial NO_DEFAULT_PATH
+        PATHS "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}" /usr/lib64 /usr/lib)
+    find_library(RICCI_SERIAL_BLAS blas PATH_SUFFIXES openblas-serial NO_DEFAULT_PATH
+        PATHS "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}" /usr/lib64 /usr/lib)
+    if(RICCI_SERIAL_LAPACK MATCHES "serial" AND RICCI_SERIAL_BLAS MATCHES "serial")
+        target_link_libraries(ricci_engine_dependencies INTERFACE
+            ${RICCI_SERIAL_LAPACK} ${RICCI_SERIAL_BLAS}
+            "-Wl,--push-state,--no-as-needed,${RICCI_SERIAL_LAPACK},${RICCI_SERIAL_BLAS},--pop-state")
+    else()
+        message(WARNING "No serial OpenBLAS (Debian: libopenblas-serial-dev): CHOLMOD will use the machine's default "
+            "BLAS; if that one starts threads, workers oversubscribe the processors.")
+    endif()
+endif()

@@ -1,0 +1,41 @@
+# Compiler options shared by every target of this project (never exported to users).
+include(GNUInstallDirs)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+    set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+
+add_library(ricci_options INTERFACE)
+target_compile_features(ricci_options INTERFACE cxx_std_20)
+target_compile_options(ricci_options INTERFACE
+    -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+    # GCC 12 raises it falsely inside std::string (GCC bug 105651).
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+    # Same bits from every translation unit: no fused multiply-add behind our back.
+    -ffp-contract=off -fopenmp-simd -fno-math-errno -fno-trapping-math)
+if(RICCI_WERROR)
+    target_compile_options(ricci_options INTERFACE -Werror)
+endif()
+if(RICCI_SANITIZE)
+    target_compile_options(ricci_options INTERFACE -fsanitize=${RICCI_SANITIZE} -fno-omit-frame-pointer
+        -fno-sanitize-recover=all
+        # Instrumented code makes GCC's flow analysis see uninitialised values that are none (in OpenMesh, for one).
+        -Wno-maybe-uninitialized)
+    target_link_options(ricci_options INTERFACE -fsanitize=${RICCI_SANITIZE})
+    # A sanitizer's runtime is not up yet when ifunc resolvers run.
+    target_compile_definitions(ricci_options INTERFACE RICCI_NO_CLONES)
+endif()
+
+set(ricci_targets "" CACHE INTERNAL "")
+function(ricci_add_room name sources)
+    add_library(ricci_${name} STATIC ${sources})
+    add_library(ricci::${name} ALIAS ricci_${name})
+    set_target_properties(ricci_${name} PROPERTIES EXPORT_NAME ${name})
+    target_compile_features(ricci_${name} PUBLIC cxx_std_20)
+    target_link_libraries(ricci_${name} PRIVATE $<BUILD_INTERFACE:ricci_options>)
+    target_include_directories(ricci_${name} PUBLIC
+        $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+        $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/ricci>)
+endfunction()

@@ -1,0 +1,3 @@
+#include "engine/app/app.h"
+
+int main(int argc, char** argv) { return ricci::app::run(argc, argv); }

@@ -1,0 +1,146 @@
+#include "engine/app/verify_results.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <toml++/toml.h>
+
+#include "engine/app/console.h"
+#include "engine/app/records.h"
+#include "engine/app/solve_options.h"
+#include "engine/flow/target.h"
+#include "engine/sweep/sweep_solver.h"
+#include "engine/verify/recompute.h"
+#include "kernels/parallel.h"
+
+namespace ricci::app {
+namespace {
+
+/// What the recomputation may differ by: the stored residual is evaluated in double, where angles at factors of
+/// e^48 carry some 1e-12; a solution at the tolerance 1e-10 stays well below.
+constexpr double kResidualSlack = 1e-9;
+constexpr double kDistortionSlack = 1e-9;  // relative
+
+/// How the sweep was solved, from the stored configuration.
+struct SweepSetting {
+    SweepOptions options;
+};
+
+SweepSetting setting_of(const StoredRun& run) {
+    SweepSetting setting;
+    const toml::table root = toml::parse(run.info.config);
+    const auto text = [&](const char* key, const std::string& fallback) {
+        return root["solve"][key].value_or(fallback);
+    };
+    setting.options.scheme = parse_scheme(text("scheme", "vertex-scaling"));
+    const std::string boundary = text("boundary", "geodesic");
+    setting.options.boundary = parse_boundary(boundary.empty() ? "geodesic" : boundary);
+    setting.options.delaunay = parse_delaunay(text("delaunay", "isometric"));
+    setting.options.densify = root["solve"]["densify"].value_or(false);
+    const std::string cone = text("cone_curvature", "");
+    if (!cone.empty()) setting.options.cone_curvature = parse_curvature(cone);
+    return setting;
+}
+
+Recomputed recompute(const SurfaceMesh& mesh, std::span<const double> u, Scheme scheme, Geometry geometry,
+                     Boundary boundary, bool delaunay, double packing_scale) {
+    if (scheme == Scheme::vertex_scaling) return recompute_scaling(mesh, u, geometry, boundary, delaunay);
+    std::vector<double> length = mesh.edge_length;
+    for (double& l : length) l *= packing_scale;
+    const CirclePacking packing = initial_circle_packing(mesh.connectivity, length, geometry, scheme);
+    return recompute_packing(mesh, packing.eta, packing.eps, u, geometry);
+}
+
+/// max |K - target| over vertices that are prescribed: all used ones, but not a free boundary.
+double residual(const SurfaceMesh& mesh, const Recomputed& r, std::span<const double> target, Boundary boundary) {
+    const std::vector<std::uint8_t> on_boundary = boundary_vertices(mesh.connectivity), used = used_vertices(mesh.connectivity);
+    double largest = 0.0;
+    for (std::size_t v = 0; v < used.size(); ++v) {
+        if (!used[v] || (on_boundary[v] && boundary == Boundary::free)) continue;
+        largest = std::max(largest, std::abs(r.curvature[v] - target[v]));
+    }
+    return largest;
+}
+
+void judge(const Recomputed& r, RecomputedSolution& s) {
+    s.flips = r.isometric_flips + r.ptolemy_flips;
+    s.distortion_recomputed = r.area_distortion;
+    if (!r.valid) s.message = "a face of the rebuilt metric is no triangle";
+    else if (!(std::abs(s.residual_recomputed - s.residual_stored) <= kResidualSlack))
+        s.message = fmt::format("residual is {:.3g}, stored {:.3g}", s.residual_recomputed, s.residual_stored);
+    else if (std::isfinite(s.distortion_stored) &&
+             !(std::abs(s.distortion_recomputed - s.distortion_stored) <= kDistortionSlack * (1.0 + s.distortion_stored)))
+        s.message = fmt::format("area distortion is {:.12g}, stored {:.12g}", s.distortion_recomputed, s.distortion_stored);
+    s.sound = s.message.empty();
+}
+
+RecomputedSolution check_kept(const StoredItem& item, const KeptFactor& kept, const SweepSetting& setting) {
+    RecomputedSolution s;
+    const StoredSweep& sweep = *item.sweep;
+    s.item = item.item.name;
+    s.what = fmt::format("{} (vertex {})", kept.vertex == sweep.best ? "best" : (kept.vertex == sweep.worst ? "worst" : "kept"),
+                         kept.vertex);
+    s.distortion_stored = kept.area_distortion;
+    for (const SweepRow& row : sweep.rows)
+        if (row.vertex == kept.vertex) s.residual_stored = row.residual_max;
+    if (setting.options.densify) {
+        s.message = "solved on a densified mesh, which is not stored: cannot be recomputed";
+        return s;
+    }
+    const SurfaceMesh mesh = surface_of(item.item);
+    std::vector<double> target(kept.conformal_factor.size(), 0.0);
+    target[static_cast<std::size_t>(kept.vertex)] =
+        setting.options.cone_curvature.value_or(2.0 * std::numbers::pi * item.item.euler_characteristic);
+    const Recomputed r = recompute(mesh, kept.conformal_factor, setting.options.scheme, Geometry::euclidean,
+                                   setting.options.boundary, setting.options.delaunay, 1.0);
+    s.residual_recomputed = residual(mesh, r, target, setting.options.boundary);
+    judge(r, s);
+    return s;
+}
+
+RecomputedSolution check_flow(const StoredItem& item, bool delaunay) {
+    const FlowRecord& flow = *item.flow;
+    RecomputedSolution s;
+    s.item = item.item.name;
+    s.what = fmt::format("flow ({})", flow.geometry);
+    s.residual_stored = flow.residual_max;
+    s.distortion_stored = std::numeric_limits<double>::quiet_NaN();
+    const SurfaceMesh mesh = surface_of(item.item);
+    const Geometry geometry = parse_geometry(flow.geometry).value();
+    const Boundary boundary = parse_boundary(flow.boundary);
+    // A free boundary's stored target is what it came to have; the flow started from zero there.
+    std::vector<double> prescribed = flow.target_curvature;
+    const std::vector<std::uint8_t> on_boundary = boundary_vertices(mesh.connectivity);
+    for (std::size_t v = 0; v < prescribed.size(); ++v)
+        if (boundary == Boundary::free && on_boundary[v]) prescribed[v] = 0.0;
+    const double scale = std::exp(initial_log_scale(mesh, prescribed, geometry));
+    const Recomputed r = recompute(mesh, flow.conformal_factor, parse_scheme(flow.scheme), geometry, boundary, delaunay, scale);
+    s.residual_recomputed = residual(mesh, r, flow.target_curvature, boundary);
+    judge(r, s);
+    return s;
+}
+
+}  // namespace
+
+std::vector<RecomputedSolution> recompute_solutions(const StoredRun& run, int threads) {
+    const SweepSetting setting = setting_of(run);
+    std::vector<std::function<RecomputedSolution()>> jobs;
+    for (const StoredItem& item : run.items) {
+        if (item.sweep)
+            for (const KeptFactor& kept : item.sweep->kept)
+                jobs.emplace_back([&] { return check_kept(item, kept, setting); });
+        if (item.flow) jobs.emplace_back([&] { return check_flow(item, setting.options.delaunay); });
+    }
+    std::vector<RecomputedSolution> results(jobs.size());
+    with_thread_limit(threads, [&] {
+        for_blocks(static_cast<std::int64_t>(jobs.size()), 1, threads > 1, [&](std::int64_t begin, std::int64_t) {
+            const auto k = static_cast<std::size_t>(begin);
+            results[k] = jobs[k]();
+        });
+    });
+    return results;
+}
+
+}  // namespace ricci::app

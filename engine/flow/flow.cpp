@@ -1,0 +1,206 @@
+#include "engine/flow/flow.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <numeric>
+#include <stdexcept>
+
+#include "engine/flow/target.h"
+
+namespace ricci {
+namespace {
+
+using std::numbers::pi;
+
+Boundary resolve_boundary(const FlowOptions& options) {
+    if (options.boundary) return *options.boundary;
+    const TargetKind target = options.target.value_or(TargetKind::flat);
+    return target == TargetKind::boundary || target == TargetKind::values ? Boundary::curvature : Boundary::geodesic;
+}
+
+SolveOptions solve_options(const FlowOptions& options, Geometry geometry) {
+    SolveOptions result;
+    result.tolerance = options.tolerance;
+    result.max_iterations = options.max_iterations > 0 ? options.max_iterations
+                                                       : (options.method == Method::newton ? 200 : 100000);
+    result.convex = geometry != Geometry::spherical && options.scheme != Scheme::virtual_radius;
+    result.interrupted = options.interrupted;
+    result.progress = options.progress;
+    return result;
+}
+
+SolveOutcome run(Metric& metric, const CurvatureTarget& target, const FlowOptions& options, Geometry geometry,
+                 std::vector<double>& u) {
+    const SolveOptions solve = solve_options(options, geometry);
+    if (options.method == Method::gradient) return gradient_descent(metric, target, solve, u);
+    const Definiteness definiteness =
+        geometry == Geometry::spherical ? Definiteness::indefinite : Definiteness::positive;
+    NewtonSolver newton(metric.surface(), target, definiteness, Ordering::minimum_degree);
+    return newton.solve(metric, target, solve, u);
+}
+
+/// Mean zero, so that a scale-free solution is one and not a family (thesis section 3.5: sum u_i = 0).
+void centre(const FlowSurface& surface, std::vector<double>& u) {
+    double sum = 0.0, count = 0.0;
+    for (std::size_t v = 0; v < u.size(); ++v) {
+        sum += surface.used[v] ? u[v] : 0.0;
+        count += surface.used[v] ? 1.0 : 0.0;
+    }
+    for (std::size_t v = 0; v < u.size(); ++v) u[v] = surface.used[v] ? u[v] - sum / count : 0.0;
+}
+
+void store(Metric& metric, const CurvatureTarget& target, FlowResult& result) {
+    const FlowSurface& surface = metric.surface();
+    result.curvature.assign(metric.curvature().begin(), metric.curvature().end());
+    result.target_curvature = target.curvature;
+    for (std::size_t v = 0; v < result.curvature.size(); ++v)
+        if (surface.used[v] && target.unknown[v] < 0) result.target_curvature[v] = result.curvature[v];
+    result.area = metric.area();
+    const double total = std::accumulate(result.curvature.begin(), result.curvature.end(), 0.0);
+    result.gauss_bonnet_error = std::abs(total + curvature_sign(result.geometry) * result.area -
+                                         2.0 * pi * surface.topology.euler_characteristic);
+    result.doubled = surface.doubled;
+    result.triangulation = metric.connectivity();
+    result.edge_length = metric.edge_lengths();
+}
+
+std::string reason(Status status, Geometry geometry, const FlowOptions& options) {
+    switch (status) {
+        case Status::converged: return {};
+        case Status::stalled:
+            return geometry == Geometry::spherical
+                       ? "the spherical energy is not convex and the direct Newton found no further descent"
+                       : "no step reduces the residual any more: the rounding floor of the evaluation";
+        case Status::max_iterations: return "the number of iterations ran out";
+        case Status::factorization_failed: return "the Hessian could not be factorised, shifted or not";
+        case Status::inadmissible_metric:
+            return fmt::format("the initial {} metric has faces that break the triangle inequality",
+                               name_of(options.scheme));
+        case Status::not_finite: return "a curvature is not finite";
+        default: return std::string(name_of(status));
+    }
+}
+
+/// Vertex scaling; falls back to extended precision where double stalls.
+void flow_by_scaling(const SurfaceMesh& mesh, const FlowOptions& options, FlowResult& result) {
+    const FlowSurface surface = make_flow_surface(mesh, result.boundary != Boundary::free, options.delaunay);
+    const CurvatureTarget target = make_target(surface, options, result.geometry, result.boundary);
+    std::vector<double>& u = result.conformal_factor;
+    u.assign(surface.used.size(), 0.0);
+    const bool fixed = result.boundary == Boundary::free && surface.topology.boundaries > 0;
+    if (!fixed) std::fill(u.begin(), u.end(), initial_log_scale(mesh, target.curvature, result.geometry));
+    result.target_curvature = target.curvature;
+    result.message = inadmissibility(surface, target, result.geometry, result.boundary);
+    std::unique_ptr<Metric> metric = std::make_unique<ScaledMetric<double>>(surface, result.geometry, options.parallel);
+    if (!result.message.empty()) {
+        metric->move_to(u);
+        metric->evaluate(false);
+        result.outcome.status = Status::inadmissible_target;
+        result.outcome.residual_max = residual_max(metric->curvature(), target);
+        store(*metric, target, result);
+        return;
+    }
+    result.outcome = run(*metric, target, options, result.geometry, u);
+    const Status status = result.outcome.status;
+    if (status == Status::stalled || status == Status::factorization_failed || status == Status::not_finite ||
+        status == Status::inadmissible_metric) {
+        // Evaluate lengths and angles in long double, from the last good u.
+        auto extended = std::make_unique<ScaledMetric<long double>>(surface, result.geometry, options.parallel);
+        std::vector<double> v = u;
+        const SolveOutcome second = run(*extended, target, options, result.geometry, v);
+        if (second.status == Status::converged || second.residual_max < result.outcome.residual_max) {
+            const std::int32_t before = result.outcome.iterations;
+            std::vector<IterationLog> log = std::move(result.outcome.log);
+            const double seconds = log.empty() ? 0.0 : log.back().seconds;
+            for (IterationLog line : second.log) {
+                line.iteration += before;
+                line.seconds += seconds;
+                line.flips += result.outcome.flips;
+                if (line.iteration > before) log.push_back(line);
+            }
+            const std::int64_t flips = result.outcome.flips + second.flips;
+            result.outcome = second;
+            result.outcome.iterations += before;
+            result.outcome.flips = flips;
+            result.outcome.log = std::move(log);
+            result.extended_precision = true;
+            u = std::move(v);
+            metric = std::move(extended);
+        }
+    }
+    if (target.scale_free) {
+        centre(surface, u);
+        metric->move_to(u);
+        metric->evaluate(false);
+        result.outcome.residual_max = residual_max(metric->curvature(), target);
+        result.outcome.flips = std::max(result.outcome.flips, metric->flips());
+        if (result.outcome.status == Status::converged && result.outcome.residual_max > options.tolerance)
+            result.outcome.status = Status::stalled;
+    }
+    result.message = reason(result.outcome.status, result.geometry, options);
+    store(*metric, target, result);
+}
+
+void flow_by_packing(const SurfaceMesh& mesh, const FlowOptions& options, FlowResult& result) {
+    const FlowSurface surface = make_flow_surface(mesh, false, false);
+    const CurvatureTarget target = make_target(surface, options, result.geometry, result.boundary);
+    const double scale = std::exp(initial_log_scale(mesh, target.curvature, result.geometry));
+    std::vector<double> length = mesh.edge_length;
+    for (double& l : length) l *= scale;
+    result.packing = initial_circle_packing(mesh.connectivity, length, result.geometry, options.scheme);
+    PackedMetric metric(surface, *result.packing, result.geometry, options.parallel);
+    std::vector<double>& u = result.conformal_factor;
+    u = result.packing->u;
+    result.target_curvature = target.curvature;
+    result.message = inadmissibility(surface, target, result.geometry, result.boundary);
+    const auto violated = [&](std::span<const double> levels) {
+        if (result.geometry != Geometry::euclidean || options.scheme == Scheme::virtual_radius) return false;
+        const auto violation = find_violation(mesh.connectivity, result.packing->eta, target, levels);
+        if (violation) result.message = describe(*violation);
+        return violation.has_value();
+    };
+    if (!result.message.empty() || violated({})) {
+        metric.move_to(u);
+        metric.evaluate(false);
+        result.outcome.status = Status::inadmissible_target;
+        result.outcome.residual_max = residual_max(metric.curvature(), target);
+        store(metric, target, result);
+        return;
+    }
+    result.outcome = run(metric, target, options, result.geometry, u);
+    if (result.outcome.status != Status::converged) {
+        result.message = reason(result.outcome.status, result.geometry, options);
+        const Status status = result.outcome.status;
+        if (status != Status::cancelled && status != Status::timeout && violated(u))
+            result.outcome.status = Status::inadmissible_target;
+    }
+    store(metric, target, result);
+}
+
+}  // namespace
+
+std::string_view name_of(Method method) { return method == Method::newton ? "newton" : "gradient"; }
+
+Geometry resolve_geometry(const FlowOptions& options, const Topology& topology) {
+    if (options.geometry) return *options.geometry;
+    if (options.target || !options.cones.empty()) return Geometry::euclidean;
+    if (topology.euler_characteristic < 0) return Geometry::hyperbolic;
+    return topology.euler_characteristic == 0 ? Geometry::euclidean : Geometry::spherical;
+}
+
+FlowResult solve_flow(const SurfaceMesh& mesh, const FlowOptions& options) {
+    FlowResult result;
+    result.geometry = resolve_geometry(options, topology_of(mesh.connectivity));
+    result.boundary = resolve_boundary(options);
+    if (options.scheme == Scheme::vertex_scaling) {
+        flow_by_scaling(mesh, options, result);
+    } else {
+        flow_by_packing(mesh, options, result);
+    }
+    return result;
+}
+
+}  // namespace ricci

@@ -1,0 +1,123 @@
+#ifdef RICCI_HAS_CHOLMOD
+
+#include <cholmod.h>
+
+#include <algorithm>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include "engine/linear/symmetric_solver.h"
+
+namespace ricci {
+namespace {
+
+class CholmodSolver final : public SymmetricSolver {
+  public:
+    explicit CholmodSolver(Definiteness definiteness) {
+        cholmod_start(&common_);
+        common_.print = 0;
+        common_.error_handler = nullptr;
+        common_.nmethods = 1;
+        const bool positive = definiteness == Definiteness::positive;
+        common_.supernodal = positive ? CHOLMOD_SUPERNODAL : CHOLMOD_SIMPLICIAL;
+        common_.final_ll = positive ? 1 : 0;
+        common_.quick_return_if_not_posdef = 1;
+    }
+    ~CholmodSolver() override {
+        cholmod_free_factor(&factor_, &common_);
+        cholmod_free_dense(&solution_, &common_);
+        cholmod_free_dense(&work_y_, &common_);
+        cholmod_free_dense(&work_e_, &common_);
+        cholmod_finish(&common_);
+    }
+    CholmodSolver(const CholmodSolver&) = delete;
+    CholmodSolver& operator=(const CholmodSolver&) = delete;
+
+    void choose_ordering(const SymmetricPattern& pattern, Ordering ordering) override {
+        common_.method[0].ordering = ordering == Ordering::nested_dissection ? CHOLMOD_METIS : CHOLMOD_AMD;
+        analyze_with(pattern, nullptr);
+        const auto* permutation = static_cast<const int*>(factor_->Perm);
+        permutation_.assign(permutation, permutation + factor_->n);
+        // Once more under the ordering found, so that every analysis of this pattern is the same call and leaves the same
+        // bits, whatever was solved in between.
+        analyze(pattern);
+    }
+
+    void analyze(const SymmetricPattern& pattern) override {
+        common_.method[0].ordering = CHOLMOD_GIVEN;
+        analyze_with(pattern, permutation_.data());
+    }
+
+    bool factorize(std::span<const double> values) override {
+        cholmod_sparse matrix = view(pattern_, values);
+        cholmod_factorize(&matrix, factor_, &common_);
+        if (common_.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
+        return common_.status == CHOLMOD_OK && factor_->minor == factor_->n;
+    }
+
+    void solve(std::span<const double> rhs, std::span<double> solution) override {
+        cholmod_dense b{};
+        b.nrow = b.nzmax = b.d = rhs.size();
+        b.ncol = 1;
+        b.x = const_cast<double*>(rhs.data());  // CHOLMOD does not write to it
+        b.xtype = CHOLMOD_REAL;
+        b.dtype = CHOLMOD_DOUBLE;
+        if (!cholmod_solve2(CHOLMOD_A, factor_, &b, nullptr, &solution_, nullptr, &work_y_, &work_e_, &common_))
+            throw std::bad_alloc();
+        const auto* x = static_cast<const double*>(solution_->x);
+        std::copy(x, x + solution.size(), solution.begin());
+    }
+
+    [[nodiscard]] std::int64_t factor_bytes() const override { return factor_bytes_; }
+
+  private:
+    static cholmod_sparse view(const SymmetricPattern& pattern, std::span<const double> values) {
+        cholmod_sparse matrix{};
+        matrix.nrow = matrix.ncol = static_cast<std::size_t>(pattern.size());
+        matrix.nzmax = pattern.row.size();
+        matrix.p = const_cast<Index*>(pattern.column_begin.data());
+        matrix.i = const_cast<Index*>(pattern.row.data());
+        matrix.x = const_cast<double*>(values.data());
+        matrix.stype = -1;
+        matrix.itype = CHOLMOD_INT;
+        matrix.xtype = values.empty() ? CHOLMOD_PATTERN : CHOLMOD_REAL;
+        matrix.dtype = CHOLMOD_DOUBLE;
+        matrix.sorted = 1;
+        matrix.packed = 1;
+        return matrix;
+    }
+
+    void analyze_with(const SymmetricPattern& pattern, int* permutation) {
+        cholmod_free_factor(&factor_, &common_);
+        pattern_ = pattern;
+        cholmod_sparse matrix = view(pattern_, {});
+        factor_ = cholmod_analyze_p(&matrix, permutation, nullptr, 0, &common_);
+        if (factor_ == nullptr) throw std::bad_alloc();
+        factor_bytes_ = static_cast<std::int64_t>(8.0 * std::max(common_.lnz, static_cast<double>(factor_->xsize)));
+    }
+
+    cholmod_common common_{};
+    cholmod_factor* factor_ = nullptr;
+    cholmod_dense *solution_ = nullptr, *work_y_ = nullptr, *work_e_ = nullptr;
+    SymmetricPattern pattern_;
+    std::vector<int> permutation_;
+    std::int64_t factor_bytes_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<SymmetricSolver> make_symmetric_solver(Definiteness definiteness) {
+    return std::make_unique<CholmodSolver>(definiteness);
+}
+
+std::string_view symmetric_solver_name() {
+    static const std::string name = "CHOLMOD " + std::to_string(CHOLMOD_MAIN_VERSION) + "." +
+                                    std::to_string(CHOLMOD_SUB_VERSION) + "." +
+                                    std::to_string(CHOLMOD_SUBSUB_VERSION);
+    return name;
+}
+
+}  // namespace ricci
+
+#endif  // RICCI_HAS_CHOLMOD

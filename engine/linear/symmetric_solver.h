@@ -1,0 +1,54 @@
+// Sparse symmetric factorisation behind one small interface: CHOLMOD (supernodal) or Eigen.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "kernels/connectivity.h"
+
+namespace ricci {
+
+/// Pattern of a symmetric matrix by columns: lower triangle with the diagonal, rows ascending, no duplicates.
+struct SymmetricPattern {
+    std::vector<Index> column_begin;  // n+1
+    std::vector<Index> row;           // nonzeros
+
+    [[nodiscard]] Index size() const { return static_cast<Index>(column_begin.size()) - 1; }
+    friend bool operator==(const SymmetricPattern&, const SymmetricPattern&) = default;
+};
+
+/// Fill-reducing orderings. Nested dissection costs several times the analysis of minimum degree and gives the sparser
+/// factor: for many solves on one pattern. Eigen knows minimum degree only.
+enum class Ordering : std::uint8_t { minimum_degree, nested_dissection };
+
+/// positive: Cholesky, fails on anything not numerically positive definite. indefinite: L D L^T without pivoting, fails
+/// on a zero pivot only; no bound on its growth, so callers check residuals.
+enum class Definiteness : std::uint8_t { positive, indefinite };
+
+/// One factor and its workspace; not thread-safe, one per thread.
+class SymmetricSolver {
+  public:
+    virtual ~SymmetricSolver() = default;
+
+    /// Chooses the fill-reducing ordering for a pattern (the expensive part) and analyses it.
+    virtual void choose_ordering(const SymmetricPattern& pattern, Ordering ordering) = 0;
+    /// Symbolic analysis of a pattern of the same size under the ordering chosen before: cheap, for patterns that
+    /// a few edge flips changed.
+    virtual void analyze(const SymmetricPattern& pattern) = 0;
+    /// Numeric factorisation. `values`: one per nonzero of the analysed pattern. False: not (positive) definite.
+    virtual bool factorize(std::span<const double> values) = 0;
+    /// Solves with the last factor. `rhs`, `solution`: n each (may be the same span).
+    virtual void solve(std::span<const double> rhs, std::span<double> solution) = 0;
+    /// Bytes of the factor, known after the analysis.
+    [[nodiscard]] virtual std::int64_t factor_bytes() const = 0;
+};
+
+std::unique_ptr<SymmetricSolver> make_symmetric_solver(Definiteness definiteness);
+
+/// "CHOLMOD 3.0.14" or "Eigen 3.4.0".
+std::string_view symmetric_solver_name();
+
+}  // namespace ricci

@@ -1,0 +1,216 @@
+#include "engine/sweep/sweep_solver.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "engine/flow/target.h"
+#include "engine/remesh/densify.h"
+#include "engine/sweep/area_distortion.h"
+
+namespace ricci {
+namespace {
+
+using std::numbers::pi;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+std::string explain_inadmissible(const Topology& topology, const SweepOptions& options, double cone) {
+    const bool absorbs = options.boundary == Boundary::free && topology.boundaries > 0;
+    if (absorbs && options.cone_curvature)
+        return cone < 2.0 * pi ? std::string() : "a cone's curvature must stay below 2 pi";
+    const Index chi = topology.euler_characteristic;
+    if (chi == 0)
+        return "chi = 0 needs no cone: the flat metric has none. Use 'ricci flow' (target flat) instead of a sweep";
+    if (chi > 0)
+        return fmt::format("chi = {} admits no single cone: its curvature would have to be {} pi, but a cone's stays "
+                           "below 2 pi. Use 'ricci flow' with the spherical geometry, several cones (--cone), or target "
+                           "boundary for a disk",
+                           chi, 2 * chi);
+    if (!absorbs && std::abs(cone - 2.0 * pi * chi) > 1e-11)
+        return fmt::format("one cone must carry 2 pi chi = {:.12g} (Gauss-Bonnet), not {:.12g}; with boundary, "
+                           "'--boundary free' lets the boundary take the rest",
+                           2.0 * pi * chi, cone);
+    return {};
+}
+
+FlowOptions flow_options(const SweepOptions& options) {
+    FlowOptions flow;
+    flow.geometry = Geometry::euclidean;
+    flow.scheme = options.scheme;
+    flow.boundary = options.boundary;
+    return flow;
+}
+
+}  // namespace
+
+SweepSurface::SweepSurface(SurfaceMesh mesh, const SweepOptions& options)
+    : mesh_(std::move(mesh)), options_(options), topology_(topology_of(mesh_.connectivity)) {
+    cone_curvature_ = options.cone_curvature.value_or(2.0 * pi * topology_.euler_characteristic);
+    inadmissible_ = explain_inadmissible(topology_, options, cone_curvature_);
+    const std::vector<std::uint8_t> boundary = boundary_vertices(mesh_.connectivity),
+                                    used = used_vertices(mesh_.connectivity);
+    for (Index v = 0; v < mesh_.connectivity.vertex_count; ++v)
+        if (used[at(v)] && !boundary[at(v)]) candidates_.push_back(v);
+    if (inadmissible_.empty() && candidates_.empty()) inadmissible_ = "no interior vertex to put the cone at";
+    if (!inadmissible_.empty()) return;
+    area_ = face_areas(mesh_);
+    const bool scaling = options.scheme == Scheme::vertex_scaling;
+    surface_ = make_flow_surface(mesh_, scaling && options.boundary != Boundary::free, scaling && options.delaunay);
+    target_ = make_target(surface_, flow_options(options), Geometry::euclidean, options.boundary);
+    if (scaling) {
+        start_ = rounded(surface_.triangulation);
+    } else {
+        packing_ = initial_circle_packing(mesh_.connectivity, mesh_.edge_length, Geometry::euclidean, options.scheme);
+    }
+}
+
+std::int64_t SweepSurface::worker_bytes() const {
+    // Per halfedge: two triangulations, fields and workspace; per unknown: a nested-dissection factor of about
+    // 7.75 n log2 n entries (George 1973's constant for a grid), twice (own and first step), and its pattern.
+    const auto halfedges = static_cast<double>(surface_.triangulation.log_chord.size());
+    const auto n = static_cast<double>(std::max<Index>(target_.unknown_count, 2));
+    return static_cast<std::int64_t>(halfedges * 140.0 + n * (2.0 * 8.0 * 7.75 * std::log2(n) + 400.0));
+}
+
+std::int64_t SweepSurface::shared_bytes() const {
+    return static_cast<std::int64_t>(static_cast<double>(surface_.triangulation.log_chord.size()) * 70.0 +
+                                     static_cast<double>(mesh_.edge_length.size()) * 60.0);
+}
+
+SweepWorker::SweepWorker(std::shared_ptr<const SweepSurface> surface)
+    : shared_(std::move(surface)), target_(shared_->target_) {
+    if (shared_->options_.densify && shared_->options_.scheme != Scheme::vertex_scaling) return;  // a mesh per vertex
+    newton_ = std::make_unique<NewtonSolver>(shared_->surface_, target_, Definiteness::positive,
+                                             Ordering::nested_dissection);
+    if (shared_->packing_) {
+        packed_ = std::make_unique<PackedMetric>(shared_->surface_, *shared_->packing_, Geometry::euclidean, false);
+        return;
+    }
+    metric_ = std::make_unique<ScaledMetric<double>>(shared_->surface_, Geometry::euclidean, false);
+    newton_->prepare_first_factor(*metric_, std::vector<double>(target_.curvature.size(), 0.0));
+}
+
+SweepWorker::~SweepWorker() = default;
+
+SweepSolve SweepWorker::solve(Index vertex, const std::function<std::optional<Status>()>& interrupted) {
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    SweepSolve result;
+    result.vertex = vertex;
+    result.area_distortion = std::numeric_limits<double>::quiet_NaN();
+    SolveOptions options;
+    options.tolerance = shared_->options_.tolerance;
+    options.max_iterations = shared_->options_.max_iterations > 0 ? shared_->options_.max_iterations : 200;
+    options.convex = shared_->options_.scheme != Scheme::virtual_radius;
+    options.interrupted = interrupted;
+    target_.curvature[at(vertex)] += shared_->cone_curvature_;
+    if (!newton_) {
+        solve_densified(result, options);
+    } else if (packed_) {
+        solve_packing(result, options);
+    } else {
+        solve_scaling(result, options);
+    }
+    target_.curvature[at(vertex)] = shared_->target_.curvature[at(vertex)];
+    result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    return result;
+}
+
+namespace {
+
+void take(const SolveOutcome& outcome, SweepSolve& result) {
+    result.status = outcome.status;
+    result.residual_max = outcome.residual_max;
+    result.newton_iterations += outcome.iterations;
+    result.flips += outcome.flips;
+}
+
+/// Shifts a scale-free solution to mean zero and measures the residual of the very numbers that are stored.
+void settle(Metric& metric, const CurvatureTarget& target, double tolerance, SweepSolve& result) {
+    std::vector<double>& u = result.conformal_factor;
+    if (target.scale_free) {
+        double sum = 0.0, count = 0.0;
+        for (std::size_t v = 0; v < u.size(); ++v) {
+            if (target.unknown[v] < 0) continue;
+            sum += u[v];
+            count += 1.0;
+        }
+        for (std::size_t v = 0; v < u.size(); ++v)
+            if (target.unknown[v] >= 0) u[v] -= sum / count;
+    }
+    metric.move_to(u);
+    metric.evaluate(false);
+    result.residual_max = residual_max(metric.curvature(), target);
+    if (result.residual_max > tolerance) result.status = Status::stalled;
+}
+
+}  // namespace
+
+void SweepWorker::solve_scaling(SweepSolve& result, const SolveOptions& options) {
+    std::vector<double>& u = result.conformal_factor;
+    u.assign(target_.curvature.size(), 0.0);
+    metric_->reset(shared_->start_);
+    take(newton_->solve(*metric_, target_, options, u), result);
+    if (result.status == Status::converged) settle(*metric_, target_, options.tolerance, result);
+    const bool stuck = result.status == Status::stalled || result.status == Status::factorization_failed ||
+                       result.status == Status::not_finite || result.status == Status::inadmissible_metric;
+    if (stuck) {
+        if (!extended_)
+            extended_ = std::make_unique<ScaledMetric<long double>>(shared_->surface_, Geometry::euclidean, false);
+        extended_->reset(shared_->surface_.triangulation);
+        take(newton_->solve(*extended_, target_, options, u), result);
+        result.extended_precision = true;
+        if (result.status == Status::converged) settle(*extended_, target_, options.tolerance, result);
+    }
+    if (result.status != Status::converged) {
+        result.message = fmt::format("residual {:.3g} after {} steps", result.residual_max, result.newton_iterations);
+        return;
+    }
+    result.area_distortion = area_distortion_of_scaling(shared_->area_, shared_->mesh_.connectivity.tail, u);
+}
+
+void SweepWorker::solve_packing(SweepSolve& result, const SolveOptions& options) {
+    const CirclePacking& packing = *shared_->packing_;
+    std::vector<double>& u = result.conformal_factor;
+    u = packing.u;
+    const bool theorem = shared_->options_.scheme != Scheme::virtual_radius;
+    const auto violated = [&](std::span<const double> levels) {
+        if (!theorem) return false;
+        const auto violation = find_violation(shared_->mesh_.connectivity, packing.eta, target_, levels);
+        if (!violation) return false;
+        result.status = Status::inadmissible_target;
+        result.message = describe(*violation);
+        return true;
+    };
+    if (violated({})) return;
+    take(newton_->solve(*packed_, target_, options, u), result);
+    if (result.status == Status::converged) settle(*packed_, target_, options.tolerance, result);
+    if (result.status == Status::converged) {
+        result.area_distortion = area_distortion_of_areas(shared_->area_, packed_->face_areas());
+    } else if (!violated(u)) {
+        result.message = fmt::format("residual {:.3g} after {} steps", result.residual_max, result.newton_iterations);
+    }
+}
+
+void SweepWorker::solve_densified(SweepSolve& result, const SolveOptions& options) {
+    const Topology& topology = shared_->topology_;
+    // The thesis: no less than four times the genus. Obtuse packings (phi > 0) may need more: Theorem 4 tells.
+    const Index least = std::max(4 * topology.genus, 3 - 2 * topology.euler_characteristic);
+    SweepOptions inner = shared_->options_;
+    inner.densify = false;
+    for (Index attempt = 1; attempt <= 4; ++attempt) {
+        const DensifiedMesh dense = densify_around(shared_->mesh_, result.vertex, attempt * least);
+        SweepWorker worker(std::make_shared<SweepSurface>(dense.mesh, inner));
+        SweepSolve solved = worker.solve(result.vertex, options.interrupted);
+        solved.conformal_factor.resize(shared_->target_.curvature.size());  // the input's vertices come first
+        result = std::move(solved);
+        if (result.status != Status::inadmissible_target) return;
+    }
+}
+
+}  // namespace ricci

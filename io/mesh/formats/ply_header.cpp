@@ -1,0 +1,130 @@
+#include "io/mesh/formats/ply_header.h"
+
+#include <array>
+#include <utility>
+
+#include "io/mesh/formats/polygon_soup.h"
+#include "io/mesh/formats/text_lines.h"
+
+namespace ricci {
+namespace {
+
+PlyType parse_type(Tokens& tokens) {
+    constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypes = {
+        {{"char", PlyType::kInt8},
+         {"int8", PlyType::kInt8},
+         {"uchar", PlyType::kUint8},
+         {"uint8", PlyType::kUint8},
+         {"short", PlyType::kInt16},
+         {"int16", PlyType::kInt16},
+         {"ushort", PlyType::kUint16},
+         {"uint16", PlyType::kUint16},
+         {"int", PlyType::kInt32},
+         {"int32", PlyType::kInt32},
+         {"uint", PlyType::kUint32},
+         {"uint32", PlyType::kUint32},
+         {"float", PlyType::kFloat32},
+         {"float32", PlyType::kFloat32},
+         {"double", PlyType::kFloat64},
+         {"float64", PlyType::kFloat64}}};
+    const std::string_view word = tokens.next();
+    for (const auto& [name, type] : kTypes) {
+        if (name == word) return type;
+    }
+    tokens.fail(shown(word) + " is not a PLY type");
+}
+
+PlyEncoding parse_encoding(Tokens& tokens) {
+    const std::string_view word = tokens.next();
+    const std::string_view version = tokens.next();
+    if (version != "1.0") tokens.fail("PLY version " + shown(version) + " is not 1.0");
+    if (word == "ascii") return PlyEncoding::kAscii;
+    if (word == "binary_little_endian") return PlyEncoding::kLittleEndian;
+    if (word == "binary_big_endian") return PlyEncoding::kBigEndian;
+    tokens.fail(shown(word) + " is not a PLY encoding");
+}
+
+PlyElement parse_element(Tokens& tokens) {
+    PlyElement element;
+    element.name = std::string(tokens.next());
+    element.count = tokens.integer("the number of elements");
+    element.line = tokens.line_number();
+    if (element.count < 0) tokens.fail("the number of elements is negative");
+    return element;
+}
+
+PlyProperty parse_property(Tokens tokens) {
+    Tokens ahead = tokens;
+    PlyProperty property;
+    if (ahead.next() == "list") {
+        property.count_type = parse_type(ahead);
+        if (!ply_is_integer(*property.count_type))
+            ahead.fail("the length of a list is not of an integer type");
+        tokens = ahead;
+    }
+    property.type = parse_type(tokens);
+    property.name = std::string(tokens.next());
+    if (property.name.empty()) tokens.fail("the property has no name");
+    return property;
+}
+
+void add_property(PlyHeader& header, Tokens& tokens) {
+    if (header.elements.empty()) tokens.fail("a property before the first element");
+    PlyElement& element = header.elements.back();
+    PlyProperty property = parse_property(tokens);
+    for (const PlyProperty& other : element.properties) {
+        if (other.name == property.name)
+            tokens.fail("property " + shown(property.name) + " is declared twice");
+    }
+    element.properties.push_back(std::move(property));
+}
+
+/// The line after "ply" must give the format; other statements in any order.
+bool statement(PlyHeader& header, Tokens& tokens, bool& have_format) {
+    const std::string_view word = tokens.next();
+    if (word == "end_header") {
+        if (!have_format) tokens.fail("the header has no format line");
+        return false;
+    }
+    if (word == "format") {
+        header.encoding = parse_encoding(tokens);
+        have_format = true;
+    } else if (word == "element") {
+        header.elements.push_back(parse_element(tokens));
+    } else if (word == "property") {
+        add_property(header, tokens);
+    } else if (word != "comment" && word != "obj_info" && !word.empty()) {
+        tokens.fail("unknown statement " + shown(word) + " in the PLY header");
+    }
+    return true;
+}
+
+}  // namespace
+
+std::size_t ply_size(PlyType type) {
+    constexpr std::array<std::size_t, 8> kSizes = {1, 1, 2, 2, 4, 4, 4, 8};
+    return kSizes[static_cast<std::size_t>(type)];
+}
+
+PlyHeader parse_ply_header(std::string_view bytes) {
+    TextLines lines(bytes);
+    PlyHeader header;
+    bool have_format = false;
+    if (!lines.next() || lines.tokens().next() != "ply") {
+        throw ContentError("syntax", 1, "line 1: a PLY file begins with the word ply");
+    }
+    while (true) {
+        if (!lines.next()) {
+            throw ContentError(
+                "truncated", lines.number(),
+                "the file ends within the PLY header, after line " + std::to_string(lines.number()));
+        }
+        Tokens tokens = lines.tokens();
+        if (!statement(header, tokens, have_format)) break;
+    }
+    header.body = bytes.size() - lines.remaining();
+    header.header_lines = lines.number();
+    return header;
+}
+
+}  // namespace ricci

@@ -1,0 +1,165 @@
+#include "io/store/assemble.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <set>
+#include <stdexcept>
+
+#include "io/store/schema.h"
+
+namespace ricci {
+namespace {
+
+using hdf5::Handle;
+
+struct Choice {
+    const SweepRow* best = nullptr;
+    const SweepRow* worst = nullptr;
+    std::vector<const SweepRow*> kept;
+};
+
+// Over converged rows; `rows` ascends by vertex, so that strict comparison leaves ties to the lowest one.
+Choice choose_extremes(const std::map<Index, SweepRow>& rows, std::uint8_t converged) {
+    Choice choice;
+    for (const auto& [vertex, row] : rows) {
+        if (row.status != converged) continue;
+        if (choice.best == nullptr || row.area_distortion < choice.best->area_distortion) choice.best = &row;
+        if (choice.worst == nullptr || row.area_distortion > choice.worst->area_distortion)
+            choice.worst = &row;
+    }
+    return choice;
+}
+
+Choice choose(const ItemState& item, const KeepPolicy& keep, std::uint8_t converged) {
+    Choice choice = choose_extremes(item.rows, converged);
+    if (!keep.best) choice.best = nullptr;
+    if (!keep.worst) choice.worst = nullptr;
+    if (keep.count == 0) return choice;
+    for (const auto& [vertex, row] : item.rows)
+        if (row.status == converged && &row != choice.best && &row != choice.worst &&
+            (keep.count > 0 || item.factors.contains(vertex)))
+            choice.kept.push_back(&row);
+    std::stable_sort(choice.kept.begin(), choice.kept.end(), [](const SweepRow* a, const SweepRow* b) {
+        return a->area_distortion < b->area_distortion;
+    });
+    if (keep.count > 0 && choice.kept.size() > static_cast<std::size_t>(keep.count))
+        choice.kept.resize(static_cast<std::size_t>(keep.count));
+    return choice;
+}
+
+const FactorSource& source_of(const ItemState& item, const std::string& name, Index vertex) {
+    const auto found = item.factors.find(vertex);
+    if (found == item.factors.end())
+        throw std::invalid_argument(fmt::format(
+            "item {}: the conformal factor of vertex {} is to be kept but is no candidate", name, vertex));
+    return found->second;
+}
+
+void write_kept(hid_t sweep, hdf5::OutputFile& file, const std::string& name, const ItemState& item,
+                const std::vector<const SweepRow*>& kept) {
+    const Handle group = hdf5::create_group(sweep, "kept");
+    std::vector<Index> vertices;
+    vertices.reserve(kept.size());
+    for (const SweepRow* row : kept) vertices.push_back(row->vertex);
+    hdf5::write_array(group, "vertex", vertices);
+    hdf5::RowWriter writer(group, "conformal_factor", kept.size(), item.vertex_count);
+    for (const Index vertex : vertices) {
+        writer.append(read_factor(source_of(item, name, vertex)));
+        file.check_writes();
+    }
+    writer.finish();
+}
+
+void write_sweep(hid_t group, hdf5::OutputFile& file, const std::string& name, const ItemState& item,
+                 const KeepPolicy& keep, const StatusNames& status) {
+    const Handle sweep = hdf5::create_group(group, "sweep");
+    hdf5::write_attribute<std::uint8_t>(sweep, "keep_best", static_cast<std::uint8_t>(keep.best));
+    hdf5::write_attribute<std::uint8_t>(sweep, "keep_worst", static_cast<std::uint8_t>(keep.worst));
+    hdf5::write_attribute<std::int64_t>(sweep, "keep_count", keep.count);
+    hdf5::seal(sweep);
+    std::vector<SweepRow> rows;
+    rows.reserve(item.rows.size());
+    for (const auto& [vertex, row] : item.rows) rows.push_back(row);
+    schema::write_rows(sweep, rows, status);
+    const auto converged = schema::converged_status(status);
+    if (!converged) return;
+    const Choice choice = choose(item, keep, *converged);
+    const auto write_one = [&](const char* where, const SweepRow* row) {
+        if (row == nullptr) return;
+        schema::write_extreme(
+            sweep, where,
+            {row->vertex, row->area_distortion, read_factor(source_of(item, name, row->vertex))});
+    };
+    write_one("best", choice.best);
+    write_one("worst", choice.worst);
+    if (!choice.kept.empty()) write_kept(sweep, file, name, item, choice.kept);
+}
+
+void write_item(hid_t items, hdf5::OutputFile& file, const std::string& name, const ItemState& item,
+                const KeepPolicy& keep, const StatusNames& status) {
+    const Handle group = hdf5::create_group(items, name);
+    {
+        const Handle source = hdf5::open_input(item.file);
+        schema::write_item(group, schema::read_item(hdf5::open_group(source, item_path(name)), name));
+    }
+    if (!item.rows.empty()) write_sweep(group, file, name, item, keep, status);
+    if (!item.flow_file.empty()) {
+        const Handle source = hdf5::open_input(item.flow_file);
+        const Handle stored = hdf5::open_group(source, item_path(name) + "/flow");
+        schema::write_flow(hdf5::create_group(group, "flow"),
+                           schema::read_flow(stored, name, item.vertex_count, status), status);
+    }
+    file.check_writes();
+}
+
+// In the order of the items, then of names: independent of who failed first.
+std::vector<FailureRecord> ordered_failures(const RunState& state, const std::vector<std::string>& items) {
+    std::vector<FailureRecord> failures;
+    for (const auto& [key, failure] : state.failures) failures.push_back(failure);
+    const auto rank = [&](const FailureRecord& failure) {
+        return std::find(items.begin(), items.end(), failure.item) - items.begin();
+    };
+    std::stable_sort(failures.begin(), failures.end(),
+                     [&](const FailureRecord& a, const FailureRecord& b) { return rank(a) < rank(b); });
+    return failures;
+}
+
+void require_all_items(const RunState& state, const std::vector<std::string>& items) {
+    const std::set<std::string> named(items.begin(), items.end());
+    if (named.size() != items.size()) throw std::invalid_argument("an item is to be assembled twice");
+    for (const std::string& name : items) {
+        const auto found = state.items.find(name);
+        if (found == state.items.end() || found->second.file.empty())
+            throw std::invalid_argument("item " + name + " is to be assembled but is not stored");
+    }
+    for (const auto& [name, item] : state.items)
+        if (!item.file.empty() && !named.contains(name))
+            throw std::invalid_argument("item " + name + " is stored but not to be assembled");
+}
+
+std::string now() {
+    const auto seconds = std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::system_clock::now());
+    return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(seconds)));
+}
+
+}  // namespace
+
+void write_result_file(const std::string& path, const RunInfo& info, const RunState& state,
+                       const std::vector<std::string>& items, const KeepPolicy& keep) {
+    require_all_items(state, items);
+    hdf5::write_file(path, [&](hdf5::OutputFile& file) {
+        schema::write_run_info(file.root(), info, now());
+        const Handle group = hdf5::create_group(file.root(), "items");
+        for (const std::string& name : items)
+            write_item(group, file, name, state.items.at(name), keep, info.status);
+        schema::write_failures(file.root(), ordered_failures(state, items));
+        file.flush();
+        hdf5::write_attribute<std::int32_t>(file.root(), "complete", 1);
+    });
+}
+
+}  // namespace ricci

@@ -1,0 +1,35 @@
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "io/store/durable.h"
+#include "io/store/run_store.h"
+
+namespace ricci {
+namespace {
+
+// RFC 4180: quoted where it must be.
+std::string csv_field(const std::string& text) {
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + '"';
+}
+
+}  // namespace
+
+void export_csv(const std::string& path, const StoredRun& run) {
+    std::string text = "item,vertex,status,area_distortion,newton_iterations,residual_max,flips,seconds\n";
+    for (const StoredItem& item : run.items) {
+        if (!item.sweep) continue;
+        const std::string name = csv_field(item.item.name);
+        for (const SweepRow& row : item.sweep->rows)
+            // Shortest decimals that read back as the same number.
+            fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{}\n", name, row.vertex,
+                           run.info.status.names.at(row.status), row.area_distortion, row.newton_iterations,
+                           row.residual_max, row.flips, row.seconds);
+    }
+    write_text_durably(path, text);
+}
+
+}  // namespace ricci

@@ -1,0 +1,23 @@
+// Work on files nobody vouches for, in a child process that may crash, loop or devour memory without harm.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace ricci {
+
+/// What the child may use before it is killed.
+struct ChildLimits {
+    std::uint64_t seconds = 60;      // of its own processor time; twice that by the clock, plus a minute
+    std::uint64_t memory_bytes = 0;  // beyond what the parent has mapped
+};
+
+/// Runs `work` in a forked child and returns what it returns; a child that crashes, is killed by a limit, or
+/// throws becomes one complaint. The caller holds an hdf5::Session, so that no other thread is inside HDF5 at
+/// the fork; `work` must not open another. Throws FileError when no child can be had.
+std::vector<std::string> run_guarded(const ChildLimits& limits,
+                                     const std::function<std::vector<std::string>()>& work);
+
+}  // namespace ricci

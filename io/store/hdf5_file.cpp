@@ -1,0 +1,221 @@
+#include "io/store/hdf5_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <utility>
+
+#include "io/store/durable.h"
+
+namespace ricci::hdf5 {
+namespace {
+
+std::recursive_mutex& session_mutex() {
+    static std::recursive_mutex mutex;
+    return mutex;
+}
+
+herr_t first_message(unsigned /*depth*/, const H5E_error2_t* error, void* text) {
+    auto& message = *static_cast<std::string*>(text);
+    if (message.empty() && error->desc != nullptr) message = error->desc;
+    return 0;
+}
+
+}  // namespace
+
+Session::Session() : lock_(session_mutex()) {
+    H5Eget_auto2(H5E_DEFAULT, &printer_, &printer_data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+Session::~Session() {
+    H5Eset_auto2(H5E_DEFAULT, printer_, printer_data_);
+}
+
+hid_t check(hid_t result, const std::string& what) {
+    if (result >= 0) return result;
+    std::string message;
+    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, first_message, &message);
+    H5Eclear2(H5E_DEFAULT);
+    throw FileError(message.empty() ? what : what + ": " + message);
+}
+
+Handle::Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, H5I_INVALID_HID)) {}
+
+Handle& Handle::operator=(Handle&& other) noexcept {
+    if (this != &other) {
+        reset();
+        id_ = std::exchange(other.id_, H5I_INVALID_HID);
+    }
+    return *this;
+}
+
+void Handle::reset() {
+    if (id_ < 0) return;
+    switch (H5Iget_type(id_)) {
+        case H5I_FILE:
+            H5Fclose(id_);
+            break;
+        case H5I_GROUP:
+            H5Gclose(id_);
+            break;
+        case H5I_DATATYPE:
+            H5Tclose(id_);
+            break;
+        case H5I_DATASPACE:
+            H5Sclose(id_);
+            break;
+        case H5I_DATASET:
+            H5Dclose(id_);
+            break;
+        case H5I_ATTR:
+            H5Aclose(id_);
+            break;
+        case H5I_GENPROP_LST:
+            H5Pclose(id_);
+            break;
+        default:
+            break;  // closed already, with its file
+    }
+    id_ = H5I_INVALID_HID;
+}
+
+OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
+    const Handle access(H5Pcreate(H5P_FILE_ACCESS), path_);
+    // Version 2 object headers carry checksums of their own; every HDF5 since 1.8 reads them.
+    check(H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18), path_);
+    use_checked_driver(access, outcome_);
+    const Handle creation(H5Pcreate(H5P_FILE_CREATE), path_);
+    check(H5Pset_obj_track_times(creation, false), path_);
+    const hid_t file = H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, creation, access);
+    if (file < 0 && outcome_.error_number != 0)
+        throw system_error(path_, "cannot create", outcome_.error_number);
+    file_ = Handle(file, path_ + ": cannot create");
+}
+
+OutputFile::~OutputFile() {
+    // Nobody will read what is abandoned: let the driver drop the rest instead of writing it.
+    if (file_ >= 0 && outcome_.error_number == 0) outcome_.error_number = ECANCELED;
+    file_.reset();
+}
+
+void OutputFile::check_writes() const {
+    if (outcome_.error_number != 0) throw system_error(path_, "cannot write", outcome_.error_number);
+}
+
+void OutputFile::flush() {
+    const herr_t flushed = H5Fflush(file_, H5F_SCOPE_LOCAL);
+    check_writes();
+    check(flushed, "cannot flush");
+}
+
+void OutputFile::close() {
+    flush();
+    const hid_t file = file_;
+    check(H5Fclose(file), "cannot close");
+    file_.reset();  // the identifier is gone
+    check_writes();
+    sync_path(path_);
+}
+
+void write_file(const std::string& path, const std::function<void(OutputFile&)>& fill) {
+    try {
+        OutputFile file(path);
+        try {
+            fill(file);
+            file.close();
+        } catch (const FileError& error) {
+            file.check_writes();  // a failed system call explains what HDF5 stumbled over
+            const std::string what = error.what();
+            throw FileError(what.starts_with(path) ? what : path + ": " + what);
+        }
+    } catch (...) {
+        ::unlink(path.c_str());
+        throw;
+    }
+}
+
+Handle open_input(const std::string& path) {
+    if (::access(path.c_str(), R_OK) != 0) throw system_error(path, "cannot open", errno);
+    const Handle access(H5Pcreate(H5P_FILE_ACCESS), path);
+    check(H5Pset_fclose_degree(access, H5F_CLOSE_STRONG), path);
+    // Result files never change in place: nothing to lock, and some file systems cannot.
+    check(H5Pset_file_locking(access, false, true), path);
+    return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), path + ": cannot open as HDF5"};
+}
+
+Handle create_group(hid_t parent, const std::string& name) {
+    const Handle creation(H5Pcreate(H5P_GROUP_CREATE), name);
+    check(H5Pset_obj_track_times(creation, false), name);
+    check(H5Pset_link_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED), name);
+    return {H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT),
+            "cannot create group " + name};
+}
+
+Handle open_group(hid_t parent, const std::string& name) {
+    return {H5Gopen2(parent, name.c_str(), H5P_DEFAULT), name_of(parent) + ": no group " + name};
+}
+
+bool has_link(hid_t parent, const std::string& name) {
+    return H5Lexists(parent, name.c_str(), H5P_DEFAULT) > 0;
+}
+
+std::vector<std::string> link_names(hid_t group) {
+    const std::string where = name_of(group);
+    const Handle opened(H5Gopen2(group, ".", H5P_DEFAULT), where);  // a file's identifier is no group's
+    const Handle creation(H5Gget_create_plist(opened), where);
+    unsigned order = 0;
+    check(H5Pget_link_creation_order(creation, &order), where);
+    const H5_index_t index = (order & H5P_CRT_ORDER_INDEXED) != 0 ? H5_INDEX_CRT_ORDER : H5_INDEX_NAME;
+    std::vector<std::string> names;
+    const auto collect = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
+        static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+        return 0;
+    };
+    hsize_t start = 0;
+    check(H5Literate(group, index, H5_ITER_INC, &start, collect, &names), where + ": cannot list");
+    return names;
+}
+
+std::string name_of(hid_t object) {
+    const ssize_t length = H5Iget_name(object, nullptr, 0);
+    if (length <= 0) return "?";
+    std::string name(static_cast<std::size_t>(length) + 1, '\0');
+    H5Iget_name(object, name.data(), name.size());
+    name.pop_back();
+    return name;
+}
+
+namespace {
+
+// Length of the valid UTF-8 sequence at the start of `text`, 0 when there is none (RFC 3629).
+std::size_t sequence_length(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const unsigned first = byte(0);
+    if (first < 0x80) return 1;
+    const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
+    if (first < 0xC2 || first > 0xF4 || text.size() < length) return 0;
+    for (std::size_t i = 1; i < length; ++i)
+        if ((byte(i) & 0xC0U) != 0x80U) return 0;
+    const unsigned second = byte(1);
+    const bool overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
+    const bool outside = (first == 0xED && second > 0x9F) || (first == 0xF4 && second > 0x8F);
+    return overlong || outside ? 0 : length;
+}
+
+}  // namespace
+
+std::string stored_text(const std::string& text) {
+    std::string stored;
+    for (std::string_view rest = text; !rest.empty();) {
+        const std::size_t length = rest.front() == '\0' ? 0 : sequence_length(rest);
+        if (length == 0) stored += fmt::format("\\x{:02x}", static_cast<unsigned char>(rest.front()));
+        stored += rest.substr(0, length);
+        rest.remove_prefix(length == 0 ? 1 : length);
+    }
+    return stored;
+}
+
+}  // namespace ricci::hdf5

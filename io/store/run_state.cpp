@@ -1,0 +1,74 @@
+#include "io/store/run_state.h"
+
+#include "io/store/schema.h"
+
+namespace ricci {
+namespace {
+
+void read_sweep(hid_t group, const std::string& item, const std::string& recorded, const StatusNames& status,
+                ItemState& state) {
+    const hdf5::Handle sweep = hdf5::open_group(group, "sweep");
+    for (const SweepRow& row : schema::read_rows(sweep, status)) state.rows.emplace(row.vertex, row);
+    const auto add = [&](Index vertex, const std::string& dataset, std::optional<hsize_t> row) {
+        const auto found = state.rows.find(vertex);
+        if (found == state.rows.end())
+            throw FileError(dataset + ": conformal factor of a vertex without a row");
+        state.factors.emplace(vertex,
+                              FactorSource{vertex, found->second.area_distortion, recorded, dataset, row});
+    };
+    const std::string path = item_path(item) + "/sweep/";
+    for (const char* name : {"best", "worst"})
+        if (const auto vertex = schema::read_extreme_vertex(sweep, name))
+            add(*vertex, path + name + "/conformal_factor", std::nullopt);
+    if (!hdf5::has_link(sweep, "kept")) return;
+    const auto kept = hdf5::read_array<Index>(hdf5::open_group(sweep, "kept"), "vertex", std::nullopt);
+    for (std::size_t i = 0; i < kept.size(); ++i) add(kept[i], path + "kept/conformal_factor", i);
+}
+
+}  // namespace
+
+std::string item_path(const std::string& item) {
+    return "/items/" + item;
+}
+
+RunState read_contents(const std::string& path, const std::string& recorded, const StatusNames& status) {
+    RunState state;
+    const hdf5::Handle file = hdf5::open_input(path);
+    const hdf5::Handle items = hdf5::open_group(file, "items");
+    for (const std::string& name : hdf5::link_names(items)) {
+        const hdf5::Handle group = hdf5::open_group(items, name);
+        ItemState& item = state.items[name];
+        if (hdf5::has_link(group, "mesh")) {
+            item.vertex_count = schema::vertex_slots(schema::read_item(group, name));
+            item.file = recorded;
+        }
+        if (hdf5::has_link(group, "sweep")) read_sweep(group, name, recorded, status, item);
+        if (hdf5::has_link(group, "flow")) item.flow_file = recorded;
+    }
+    if (hdf5::has_link(file, "failures"))
+        for (FailureRecord& failure : schema::read_failures(file))
+            state.failures.emplace(std::pair(failure.item, failure.stage), failure);
+    return state;
+}
+
+void merge_contents(RunState& state, RunState part) {
+    for (auto& [name, item] : part.items) {
+        ItemState& known = state.items[name];
+        if (known.file.empty()) {
+            known.file = item.file;
+            known.vertex_count = item.vertex_count;
+        }
+        if (known.flow_file.empty()) known.flow_file = item.flow_file;
+        known.rows.merge(item.rows);
+        known.factors.merge(item.factors);
+    }
+    state.failures.merge(part.failures);
+}
+
+std::vector<double> read_factor(const FactorSource& source) {
+    const hdf5::Handle file = hdf5::open_input(source.file);
+    if (source.row) return hdf5::Input(file, source.dataset).read_row(*source.row);
+    return hdf5::read_array<double>(file, source.dataset, std::nullopt);
+}
+
+}  // namespace ricci

@@ -1,0 +1,51 @@
+// What is known to be finished of a run, and where it lies: the index over segments and result files.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/store/hdf5_file.h"
+#include "io/store/run_store.h"
+
+namespace ricci {
+
+/// Where a conformal factor lies: a whole dataset, or a row of one.
+struct FactorSource {
+    Index vertex = 0;
+    double area_distortion = 0.0;
+    std::string file, dataset;
+    std::optional<hsize_t> row;
+};
+
+/// What is finished of one item. Conformal factors and meshes stay on disk.
+struct ItemState {
+    std::string file;              // holds the item's mesh; empty: not stored
+    std::string flow_file;         // holds its flow; empty: none
+    std::size_t vertex_count = 0;  // V, once the mesh is stored
+    std::map<Index, SweepRow> rows;
+    std::map<Index, FactorSource> factors;
+};
+
+/// What is finished of a run.
+struct RunState {
+    std::map<std::string, ItemState> items;
+    std::map<std::pair<std::string, std::string>, FailureRecord> failures;  // by item and stage
+};
+
+/// Reads what a segment or result file holds; sources get the file name `recorded`. Callers hold an
+/// hdf5::Session. Throws FileError.
+RunState read_contents(const std::string& path, const std::string& recorded, const StatusNames& status);
+
+/// Adds what is new in `part`; what is there already stays.
+void merge_contents(RunState& state, RunState part);
+
+/// Reads one conformal factor. Throws FileError.
+std::vector<double> read_factor(const FactorSource& source);
+
+/// Group of an item within a file.
+std::string item_path(const std::string& item);
+
+}  // namespace ricci

@@ -1,0 +1,88 @@
+// Records that do not fit together are errors of the caller, found before anything is written.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "io/store/schema.h"
+
+namespace ricci::schema {
+namespace {
+
+void require(bool holds, const std::string& item, const char* what) {
+    if (!holds) throw std::invalid_argument(fmt::format("record of {}: {}", item, what));
+}
+
+bool all_below(const std::vector<Triangle>& triangles, std::size_t limit) {
+    return std::all_of(triangles.begin(), triangles.end(), [&](const Triangle& triangle) {
+        return std::all_of(triangle.begin(), triangle.end(),
+                           [&](Index v) { return v >= 0 && static_cast<std::size_t>(v) < limit; });
+    });
+}
+
+}  // namespace
+
+std::size_t vertex_slots(const ItemRecord& item) {
+    if (!item.points.empty()) return item.points.size();
+    return item.source_vertex.empty() ? static_cast<std::size_t>(item.vertices) : item.source_vertex.size();
+}
+
+void require_valid(const ItemRecord& item) {
+    const std::size_t slots = vertex_slots(item);
+    const bool name_ok = !item.name.empty() && item.name != "." && item.name != ".." &&
+                         item.name.find('/') == std::string::npos;
+    require(name_ok, item.name, "a name is not empty and holds no slash");
+    require(item.vertices >= 0 && static_cast<std::size_t>(item.vertices) <= slots, item.name,
+            "more vertices than points");
+    require(item.triangles.size() == static_cast<std::size_t>(item.faces), item.name,
+            "faces is not the number of triangles");
+    require(all_below(item.triangles, slots), item.name, "a triangle names a vertex that does not exist");
+    require(item.source_vertex.empty() || item.source_vertex.size() == slots, item.name,
+            "source_vertex has not V values");
+    if (!item.points.empty()) return;
+    require(item.twin.size() == 3 * item.triangles.size() && item.edge_length.size() == item.twin.size(),
+            item.name, "an intrinsic surface needs 3F twins and edge lengths");
+}
+
+void require_valid(const SweepBlock& block, std::size_t vertex_count, const StatusNames& status) {
+    const auto converged = converged_status(status);
+    for (const SweepRow& row : block.rows) {
+        require(row.vertex >= 0 && static_cast<std::size_t>(row.vertex) < vertex_count, block.item,
+                "a row's vertex does not exist");
+        require(row.status < status.names.size(), block.item, "a row's status has no name");
+        require(row.status != converged || std::isfinite(row.area_distortion), block.item,
+                "a converged row has no finite area distortion");
+    }
+    for (const KeptFactor& factor : block.kept) {
+        require(factor.conformal_factor.size() == vertex_count, block.item,
+                "a conformal factor has not V values");
+        const auto row = std::find_if(block.rows.begin(), block.rows.end(),
+                                      [&](const SweepRow& r) { return r.vertex == factor.vertex; });
+        require(row != block.rows.end(), block.item, "a conformal factor belongs to no row of its block");
+        require(row->status == converged && row->area_distortion == factor.area_distortion, block.item,
+                "a conformal factor's row did not converge, or to another area distortion");
+    }
+}
+
+void require_valid(const FlowRecord& flow, std::size_t vertex_count, const StatusNames& status) {
+    require(flow.status < status.names.size(), flow.item, "the flow's status has no name");
+    const auto fits = [&](const std::vector<double>& values) { return values.size() == vertex_count; };
+    require(fits(flow.conformal_factor) && fits(flow.target_curvature) && fits(flow.curvature), flow.item,
+            "a field of the flow has not V values");
+    const std::size_t halfedges = 3 * flow.triangles.size();
+    require(flow.twin.size() == halfedges && flow.edge_length.size() == halfedges, flow.item,
+            "the flow's triangulation has not 3F twins and edge lengths");
+    const std::size_t steps = flow.log_residual_max.size();
+    require(
+        flow.log_step.size() == steps && flow.log_seconds.size() == steps && flow.log_flips.size() == steps,
+        flow.item, "the columns of the flow's log differ in length");
+}
+
+std::optional<std::uint8_t> converged_status(const StatusNames& status) {
+    const auto found = std::find(status.names.begin(), status.names.end(), "converged");
+    if (found == status.names.end()) return std::nullopt;
+    return static_cast<std::uint8_t>(found - status.names.begin());
+}
+
+}  // namespace ricci::schema

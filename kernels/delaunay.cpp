@@ -1,0 +1,166 @@
+#include "kernels/delaunay.h"
+
+#include <algorithm>
+#include <limits>
+#include <type_traits>
+
+#include "kernels/vector_math.h"
+
+namespace ricci {
+namespace {
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+/// Relative slack of the test per unit of a/b + b/a: a few roundings of the ratios it is made of.
+template <class Real>
+constexpr Real kSlack = Real(64) * std::numeric_limits<Real>::epsilon();
+
+/// 2 cos(angle opposite c) in a triangle with sides a, b, c, plus the tolerance of its rounding.
+template <class Real>
+inline Real cosine_test(Real a, Real b, Real c) {
+    const Real larger = a > b ? a : b, smaller = a > b ? b : a;
+    const Real ratio = larger / smaller + smaller / larger;
+    return ((larger - c) * (larger + c) + smaller * smaller) / (larger * smaller) + kSlack<Real> * ratio;
+}
+
+/// Logarithms of the chords of face f in the metric u, relative to the longest.
+template <class Real>
+inline void face_logs(const IntrinsicTriangulation<Real>& t, std::span<const double> u, std::size_t h, Real* x) {
+    const auto& tail = t.connectivity.tail;
+    for (std::size_t k = 0; k < 3; ++k) x[k] = t.log_chord[h + k];
+    if (!u.empty()) {
+        const Real u0 = u[at(tail[h])], u1 = u[at(tail[h + 1])], u2 = u[at(tail[h + 2])];
+        x[0] += Real(0.5) * (u0 + u1);
+        x[1] += Real(0.5) * (u1 + u2);
+        x[2] += Real(0.5) * (u2 + u0);
+    }
+    const Real top = std::max(x[0], std::max(x[1], x[2]));
+    for (int k = 0; k < 3; ++k) x[k] -= top;
+}
+
+/// The corner test of the corner opposite halfedge h.
+template <class Real>
+Real opposite_test(const IntrinsicTriangulation<Real>& t, std::span<const double> u, Index h) {
+    const auto first = static_cast<std::size_t>(3 * face_of(h));
+    Real x[3];
+    face_logs(t, u, first, x);
+    for (Real& value : x) value = std::exp(value);
+    const auto k = static_cast<std::size_t>(h) - first;
+    return cosine_test(x[(k + 1) % 3], x[(k + 2) % 3], x[k]);
+}
+
+template <class Real>
+bool edge_fails(const IntrinsicTriangulation<Real>& t, std::span<const double> u, Index h) {
+    return opposite_test(t, u, h) + opposite_test(t, u, t.connectivity.twin[at(h)]) < Real(0);
+}
+
+template <class Real>
+RICCI_ALWAYS_INLINE void test_block(Real (*x)[kFaceBlock], int lanes, double (*out)[kFaceBlock]) {
+#pragma omp simd
+    for (int i = 0; i < lanes; ++i) {
+        const Real l0 = std::exp(x[0][i]), l1 = std::exp(x[1][i]), l2 = std::exp(x[2][i]);
+        out[0][i] = static_cast<double>(cosine_test(l1, l2, l0));
+        out[1][i] = static_cast<double>(cosine_test(l2, l0, l1));
+        out[2][i] = static_cast<double>(cosine_test(l0, l1, l2));
+    }
+}
+RICCI_VECTOR_CLONES void test_block_double(double (*x)[kFaceBlock], int lanes, double (*out)[kFaceBlock]) {
+    test_block<double>(x, lanes, out);
+}
+
+/// The corner opposite each halfedge, tested in one pass over all faces. // 3F
+template <class Real>
+void test_corners(const IntrinsicTriangulation<Real>& t, std::span<const double> u, std::vector<double>& out) {
+    const auto faces = static_cast<std::size_t>(t.connectivity.face_count());
+    out.resize(3 * faces);
+    alignas(64) Real x[3][kFaceBlock];
+    alignas(64) double values[3][kFaceBlock];
+    for (std::size_t begin = 0; begin < faces; begin += kFaceBlock) {
+        const int count = static_cast<int>(std::min<std::size_t>(kFaceBlock, faces - begin));
+        for (int i = 0; i < count; ++i) {
+            Real logs[3];
+            face_logs(t, u, 3 * (begin + static_cast<std::size_t>(i)), logs);
+            for (int k = 0; k < 3; ++k) x[k][i] = logs[k];
+        }
+        const int lanes = (count + kVectorPad - 1) / kVectorPad * kVectorPad;
+        for (int i = count; i < lanes; ++i) x[0][i] = x[1][i] = x[2][i] = Real(0);
+        if constexpr (std::is_same_v<Real, double>) {
+            test_block_double(x, lanes, values);
+        } else {
+            test_block<Real>(x, lanes, values);
+        }
+        for (int i = 0; i < count; ++i)
+            for (std::size_t k = 0; k < 3; ++k)
+                out[3 * (begin + static_cast<std::size_t>(i)) + k] = values[k][i];
+    }
+}
+
+}  // namespace
+
+template <class Real>
+FlipCount make_delaunay(IntrinsicTriangulation<Real>& t, std::span<const double> u, FlipRule rule,
+                        DelaunayWorkspace& w) {
+    Connectivity& c = t.connectivity;
+    w.touched_faces.clear();
+    w.stack.clear();
+    w.on_stack.resize(static_cast<std::size_t>(c.edge_count));
+    test_corners(t, u, w.corner_test);
+    for (Index h = c.halfedge_count() - 1; h >= 0; --h) {
+        const Index twin = c.twin[at(h)];
+        if (twin > h && face_of(twin) != face_of(h) && w.corner_test[at(h)] + w.corner_test[at(twin)] < 0.0) {
+            w.stack.push_back(h);
+            w.on_stack[at(c.edge[at(h)])] = 1;
+        }
+    }
+    FlipCount count;
+    const std::int64_t bound = 1000 + 200 * static_cast<std::int64_t>(c.edge_count);
+    // A slot on the stack names an edge through its halfedge; a flip moves two halfedges per face, so the edges are
+    // pushed anew with their new slots and stale entries are recognised by their edge's flag.
+    while (!w.stack.empty()) {
+        const Index h = w.stack.back();
+        w.stack.pop_back();
+        const Index e = c.edge[at(h)];
+        if (!w.on_stack[at(e)]) continue;
+        w.on_stack[at(e)] = 0;
+        if (!flippable(c, h) || !edge_fails(t, u, h)) continue;
+        if (count.flips >= bound) {
+            count.finished = false;
+            break;
+        }
+        const Index twin = c.twin[at(h)];
+        const Real length = rule == FlipRule::ptolemy ? ptolemy_log<Real>(t.log_chord, c, h)
+                                                      : unfolded_log<Real>(t.log_chord, c, h);
+        flip_edge<Real>(c, t.log_chord, h, length);
+        ++count.flips;
+        w.touched_faces.push_back(face_of(h));
+        w.touched_faces.push_back(face_of(twin));
+        // The four sides of the quadrilateral, in their new slots.
+        for (const Index side : {h, prev_halfedge(h), twin, prev_halfedge(twin)}) {
+            if (!flippable(c, side)) continue;
+            w.stack.push_back(side);
+            w.on_stack[at(c.edge[at(side)])] = 1;
+        }
+    }
+    for (const Index h : w.stack) w.on_stack[at(c.edge[at(h)])] = 0;
+    return count;
+}
+
+template <class Real>
+std::int64_t count_non_delaunay(const IntrinsicTriangulation<Real>& t, std::span<const double> u) {
+    std::int64_t count = 0;
+    for (Index h = 0; h < t.connectivity.halfedge_count(); ++h) {
+        const Index twin = t.connectivity.twin[at(h)];
+        if (twin > h && flippable(t.connectivity, h) && edge_fails(t, u, h)) ++count;
+    }
+    return count;
+}
+
+#define RICCI_INSTANTIATE(Real)                                                                              \
+    template FlipCount make_delaunay<Real>(IntrinsicTriangulation<Real>&, std::span<const double>, FlipRule, \
+                                           DelaunayWorkspace&);                                              \
+    template std::int64_t count_non_delaunay<Real>(const IntrinsicTriangulation<Real>&, std::span<const double>);
+RICCI_INSTANTIATE(double)
+RICCI_INSTANTIATE(long double)
+#undef RICCI_INSTANTIATE
+
+}  // namespace ricci

@@ -1,0 +1,107 @@
+// One triangle in chords: angles, area and the derivatives of the angles. Branch-free, so that the same text
+// serves the vectorised loops (double) and the extended-precision ones (long double).
+//
+// Numbering: l[k] is the chord of the halfedge k, from corner k to corner k+1; it lies opposite corner k+2.
+#pragma once
+
+#include <cmath>
+
+namespace ricci {
+
+/// Sum of two numbers minus a third, b + c - a, in Kahan's order: relative error of a few ulps of the data for any
+/// shape (W. Kahan, Miscalculating area and angles of a needle-like triangle). `p` >= `q` are b and c sorted.
+template <class Real>
+inline Real excess(Real a, Real p, Real q) {
+    return q + (p - a);
+}
+
+/// What a triangle's angles are made of.
+template <class Real>
+struct TriangleTerms {
+    Real root;         // sqrt(16 A^2 - kappa (abc)^2) = 2 sin(theta) s(l) s(l'); zero or NaN-free for a broken triangle
+    Real numerator[3]; // at corner k: b^2 + c^2 - a^2 - kappa b^2 c^2 / 2 = root * cot(theta_k)
+    Real radicand;     // what the root was taken of; not positive: no such triangle
+};
+
+template <int kappa, class Real>
+inline TriangleTerms<Real> triangle_terms(Real l0, Real l1, Real l2) {
+    const Real max01 = l0 > l1 ? l0 : l1, min01 = l0 > l1 ? l1 : l0;
+    const Real max12 = l1 > l2 ? l1 : l2, min12 = l1 > l2 ? l2 : l1;
+    const Real max20 = l2 > l0 ? l2 : l0, min20 = l2 > l0 ? l0 : l2;
+    // Corner 0 lies opposite l1, corner 1 opposite l2, corner 2 opposite l0.
+    TriangleTerms<Real> t;
+    t.radicand = (l0 + l1 + l2) * excess(l1, max20, min20) * excess(l2, max01, min01) * excess(l0, max12, min12);
+    t.numerator[0] = (max20 - l1) * (max20 + l1) + min20 * min20;
+    t.numerator[1] = (max01 - l2) * (max01 + l2) + min01 * min01;
+    t.numerator[2] = (max12 - l0) * (max12 + l0) + min12 * min12;
+    if constexpr (kappa != 0) {
+        const Real s0 = l0 * l0, s1 = l1 * l1, s2 = l2 * l2;
+        t.radicand -= Real(kappa) * (s0 * s1 * s2);
+        t.numerator[0] -= Real(kappa) * Real(0.5) * (s2 * s0);
+        t.numerator[1] -= Real(kappa) * Real(0.5) * (s0 * s1);
+        t.numerator[2] -= Real(kappa) * Real(0.5) * (s1 * s2);
+    }
+    t.root = std::sqrt(t.radicand > Real(0) ? t.radicand : Real(0));
+    return t;
+}
+
+/// Area of the triangle in its geometry: tan(area/2) = root/2 / (1 + sum of cos(h)(l)) for kappa != 0 (the triple
+/// product formula), root/4 for the Euclidean plane.
+template <int kappa, class Real>
+inline Real triangle_area(const TriangleTerms<Real>& t, Real l0, Real l1, Real l2) {
+    if constexpr (kappa == 0) {
+        return t.root * Real(0.25);
+    } else {
+        const Real cosines = Real(4) - Real(kappa) * Real(0.5) * (l0 * l0 + l1 * l1 + l2 * l2);
+        return Real(2) * std::atan2(t.root * Real(0.5), cosines);
+    }
+}
+
+/// Derivatives of one triangle's angles for vertex scaling (eps = 0):
+///   off[k]  = d theta_i / d u_j = d theta_j / d u_i for the ends i, j of halfedge k,
+///   diag[k] = d theta_k / d u_k.
+/// From dtheta_i/dl_i = s(l_i)/2A, dtheta_i/dl_j = -cos(theta_k) s(l_i)/2A and dl/du = lambda^2 / (2 s(l)):
+///   off = (a^2 + b^2 - c^2) / (root (2 - kappa c^2/2)), which is cot(theta)/2 in the plane.
+template <int kappa, class Real>
+inline void scaling_derivatives(const TriangleTerms<Real>& t, Real l0, Real l1, Real l2, Real* off, Real* diag) {
+    const Real inverse = Real(1) / t.root;
+    if constexpr (kappa == 0) {
+        off[0] = Real(0.5) * t.numerator[2] * inverse;
+        off[1] = Real(0.5) * t.numerator[0] * inverse;
+        off[2] = Real(0.5) * t.numerator[1] * inverse;
+        diag[0] = -(off[0] + off[2]);
+        diag[1] = -(off[1] + off[0]);
+        diag[2] = -(off[2] + off[1]);
+    } else {
+        const Real half = Real(kappa) * Real(0.5);
+        const Real s0 = l0 * l0, s1 = l1 * l1, s2 = l2 * l2;
+        const Real w0 = inverse / (Real(2) - half * s0), w1 = inverse / (Real(2) - half * s1),
+                   w2 = inverse / (Real(2) - half * s2);
+        off[0] = (t.numerator[2] + half * (s1 * s2)) * w0;
+        off[1] = (t.numerator[0] + half * (s2 * s0)) * w1;
+        off[2] = (t.numerator[1] + half * (s0 * s1)) * w2;
+        // Corner 0 meets halfedges 0 (other end: corner 1) and 2 (other end: corner 2); and so on.
+        diag[0] = -(t.numerator[1] * w0 + t.numerator[2] * w2);
+        diag[1] = -(t.numerator[2] * w1 + t.numerator[0] * w0);
+        diag[2] = -(t.numerator[0] * w2 + t.numerator[1] * w1);
+    }
+}
+
+/// The same for any scheme: `n[k][e]` is s(l_k) * d l_k / d u at the tail (e = 0) and the head (e = 1) of halfedge k.
+///   off_ij = (n_jk^j - N_j n_ij^j / s(l_ij)^2) / 2A,  diag_i = -(N_k n_ik^i/s(l_ik)^2 + N_j n_ij^i/s(l_ij)^2) / 2A,
+/// N = numerator/2, 2A = root/2, s(l)^2 = lambda^2 (1 - kappa lambda^2/4).
+template <int kappa, class Real>
+inline void general_derivatives(const TriangleTerms<Real>& t, const Real* l, const Real (*n)[2], Real* off, Real* diag) {
+    const Real inverse = Real(2) / t.root;
+    Real sine2[3];
+    for (int k = 0; k < 3; ++k) sine2[k] = l[k] * l[k] * (Real(1) - Real(0.25 * kappa) * l[k] * l[k]);
+    for (int k = 0; k < 3; ++k) {
+        const int next = (k + 1) % 3, prev = (k + 2) % 3;
+        // Halfedge k runs i -> j, next runs j -> third corner.
+        off[k] = inverse * (n[next][0] - Real(0.5) * t.numerator[next] * n[k][1] / sine2[k]);
+        diag[k] = -inverse * Real(0.5) *
+                  (t.numerator[prev] * n[prev][1] / sine2[prev] + t.numerator[next] * n[k][0] / sine2[k]);
+    }
+}
+
+}  // namespace ricci
