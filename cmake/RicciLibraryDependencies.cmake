@@ -25,10 +25,11 @@ add_library(ricci_engine_dependencies INTERFACE IMPORTED)
 target_link_libraries(ricci_engine_dependencies INTERFACE fmt::fmt OpenMeshCore OpenMeshTools nanoflann::nanoflann)
 
 if(RICCI_CHOLMOD)
+    ricci_find(OpenMP COMPONENTS CXX)  # only to keep CHOLMOD's own parallel regions serial
     find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
     find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
     target_include_directories(ricci_engine_dependencies SYSTEM INTERFACE ${CHOLMOD_INCLUDE_DIR})
-    target_link_libraries(ricci_engine_dependencies INTERFACE ${CHOLMOD_LIBRARY})
+    target_link_libraries(ricci_engine_dependencies INTERFACE ${CHOLMOD_LIBRARY} OpenMP::OpenMP_CXX)
     target_compile_definitions(ricci_engine_dependencies INTERFACE RICCI_HAS_CHOLMOD=1)
     # CHOLMOD asks for whatever libblas.so.3 the machine prefers. Linked directly, and found by run path, the serial
     # OpenBLAS is loaded first and wins even where a threaded one is the machine's default. Named twice: plainly for

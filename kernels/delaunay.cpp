@@ -15,12 +15,12 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 template <class Real>
 constexpr Real kSlack = Real(64) * std::numeric_limits<Real>::epsilon();
 
-/// 2 cos(angle opposite c) in a triangle with sides a, b, c, plus the tolerance of its rounding.
+/// 2 cos(angle opposite c) in a triangle with sides a, b, c, plus `slack` per unit of a/b + b/a.
 template <class Real>
-inline Real cosine_test(Real a, Real b, Real c) {
+inline Real cosine_test(Real a, Real b, Real c, Real slack) {
     const Real larger = a > b ? a : b, smaller = a > b ? b : a;
     const Real ratio = larger / smaller + smaller / larger;
-    return ((larger - c) * (larger + c) + smaller * smaller) / (larger * smaller) + kSlack<Real> * ratio;
+    return ((larger - c) * (larger + c) + smaller * smaller) / (larger * smaller) + slack * ratio;
 }
 
 /// Logarithms of the chords of face f in the metric u, relative to the longest.
@@ -46,7 +46,7 @@ Real opposite_test(const IntrinsicTriangulation<Real>& t, std::span<const double
     face_logs(t, u, first, x);
     for (Real& value : x) value = std::exp(value);
     const auto k = static_cast<std::size_t>(h) - first;
-    return cosine_test(x[(k + 1) % 3], x[(k + 2) % 3], x[k]);
+    return cosine_test(x[(k + 1) % 3], x[(k + 2) % 3], x[k], kSlack<Real>);
 }
 
 template <class Real>
@@ -54,41 +54,36 @@ bool edge_fails(const IntrinsicTriangulation<Real>& t, std::span<const double> u
     return opposite_test(t, u, h) + opposite_test(t, u, t.connectivity.twin[at(h)]) < Real(0);
 }
 
-template <class Real>
-RICCI_ALWAYS_INLINE void test_block(Real (*x)[kFaceBlock], int lanes, double (*out)[kFaceBlock]) {
+/// Tests the three corners of faces given by their relative log chords, in double. `slack` as in cosine_test.
+RICCI_VECTOR_CLONES void test_block(double (*x)[kFaceBlock], int lanes, double slack, double (*out)[kFaceBlock]) {
 #pragma omp simd
     for (int i = 0; i < lanes; ++i) {
-        const Real l0 = std::exp(x[0][i]), l1 = std::exp(x[1][i]), l2 = std::exp(x[2][i]);
-        out[0][i] = static_cast<double>(cosine_test(l1, l2, l0));
-        out[1][i] = static_cast<double>(cosine_test(l2, l0, l1));
-        out[2][i] = static_cast<double>(cosine_test(l0, l1, l2));
+        const double l0 = std::exp(x[0][i]), l1 = std::exp(x[1][i]), l2 = std::exp(x[2][i]);
+        out[0][i] = cosine_test(l1, l2, l0, slack);
+        out[1][i] = cosine_test(l2, l0, l1, slack);
+        out[2][i] = cosine_test(l0, l1, l2, slack);
     }
 }
-RICCI_VECTOR_CLONES void test_block_double(double (*x)[kFaceBlock], int lanes, double (*out)[kFaceBlock]) {
-    test_block<double>(x, lanes, out);
-}
 
-/// The corner opposite each halfedge, tested in one pass over all faces. // 3F
+/// The corner opposite each halfedge, tested in one pass over all faces. In extended precision the pass is double all the
+/// same, with its slack turned round: it only finds the edges worth a look. // 3F
 template <class Real>
 void test_corners(const IntrinsicTriangulation<Real>& t, std::span<const double> u, std::vector<double>& out) {
+    const double slack = std::is_same_v<Real, double> ? kSlack<double> : -kSlack<double>;
     const auto faces = static_cast<std::size_t>(t.connectivity.face_count());
     out.resize(3 * faces);
-    alignas(64) Real x[3][kFaceBlock];
+    alignas(64) double x[3][kFaceBlock];
     alignas(64) double values[3][kFaceBlock];
     for (std::size_t begin = 0; begin < faces; begin += kFaceBlock) {
         const int count = static_cast<int>(std::min<std::size_t>(kFaceBlock, faces - begin));
         for (int i = 0; i < count; ++i) {
             Real logs[3];
             face_logs(t, u, 3 * (begin + static_cast<std::size_t>(i)), logs);
-            for (int k = 0; k < 3; ++k) x[k][i] = logs[k];
+            for (int k = 0; k < 3; ++k) x[k][i] = static_cast<double>(logs[k]);
         }
         const int lanes = (count + kVectorPad - 1) / kVectorPad * kVectorPad;
-        for (int i = count; i < lanes; ++i) x[0][i] = x[1][i] = x[2][i] = Real(0);
-        if constexpr (std::is_same_v<Real, double>) {
-            test_block_double(x, lanes, values);
-        } else {
-            test_block<Real>(x, lanes, values);
-        }
+        for (int i = count; i < lanes; ++i) x[0][i] = x[1][i] = x[2][i] = 0.0;
+        test_block(x, lanes, slack, values);
         for (int i = 0; i < count; ++i)
             for (std::size_t k = 0; k < 3; ++k)
                 out[3 * (begin + static_cast<std::size_t>(i)) + k] = values[k][i];

@@ -46,20 +46,21 @@ RICCI_ALWAYS_INLINE void evaluate_block(const BlockChords<Real>& in, BlockResult
         out.angle[2][i] = std::atan2(t.root, t.numerator[2]);
         out.area[i] = triangle_area<kappa>(t, l0, l1, l2);
         if constexpr (derivatives) {
-            Real off[3], diagonal[3];
+            AngleDerivatives<Real> d;
             if constexpr (scaling) {
-                scaling_derivatives<kappa>(t, l0, l1, l2, off, diagonal);
+                d = scaling_derivatives<kappa>(t, l0, l1, l2);
             } else {
-                const Real l[3] = {l0, l1, l2};
-                const Real n[3][2] = {{in.slope[0][0][i], in.slope[0][1][i]},
-                                      {in.slope[1][0][i], in.slope[1][1][i]},
-                                      {in.slope[2][0][i], in.slope[2][1][i]}};
-                general_derivatives<kappa>(t, l, n, off, diagonal);
+                d = general_derivatives<kappa>(t, l0, l1, l2, {in.slope[0][0][i], in.slope[0][1][i]},
+                                               {in.slope[1][0][i], in.slope[1][1][i]},
+                                               {in.slope[2][0][i], in.slope[2][1][i]});
             }
-            for (int k = 0; k < 3; ++k) {
-                out.off[k][i] = static_cast<double>(off[k]);
-                out.diagonal[k][i] = static_cast<double>(diagonal[k]);
-            }
+            // Written out: an inner loop would keep the compiler from vectorising the outer one.
+            out.off[0][i] = static_cast<double>(d.off[0]);
+            out.off[1][i] = static_cast<double>(d.off[1]);
+            out.off[2][i] = static_cast<double>(d.off[2]);
+            out.diagonal[0][i] = static_cast<double>(d.diagonal[0]);
+            out.diagonal[1][i] = static_cast<double>(d.diagonal[1]);
+            out.diagonal[2][i] = static_cast<double>(d.diagonal[2]);
         }
     }
 }

@@ -10,7 +10,12 @@ IntrinsicTriangulation<Real> intrinsic_triangulation(const SurfaceMesh& mesh) {
     result.log_chord.resize(c.tail.size());
     for (Index h = 0; h < c.halfedge_count(); ++h) {
         const auto s = static_cast<std::size_t>(h);
-        long double length = mesh.edge_length[s];
+        const Index t = c.twin[s];
+        if (t != kNoTwin && t < h) {
+            result.log_chord[s] = result.log_chord[static_cast<std::size_t>(t)];
+            continue;
+        }
+        long double log_length = 0;
         if (!mesh.intrinsic()) {
             // From the points, not from the rounded lengths: slivers need every bit.
             const Point& p = mesh.points[static_cast<std::size_t>(c.tail[s])];
@@ -20,9 +25,11 @@ IntrinsicTriangulation<Real> intrinsic_triangulation(const SurfaceMesh& mesh) {
                 const long double difference = static_cast<long double>(q[k]) - static_cast<long double>(p[k]);
                 squares += difference * difference;
             }
-            length = std::sqrt(squares);
+            log_length = std::log(squares) / 2;
+        } else {
+            log_length = std::log(static_cast<long double>(mesh.edge_length[s]));
         }
-        result.log_chord[s] = static_cast<Real>(std::log(length));
+        result.log_chord[s] = static_cast<Real>(log_length);
     }
     return result;
 }

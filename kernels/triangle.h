@@ -57,51 +57,70 @@ inline Real triangle_area(const TriangleTerms<Real>& t, Real l0, Real l1, Real l
     }
 }
 
-/// Derivatives of one triangle's angles for vertex scaling (eps = 0):
-///   off[k]  = d theta_i / d u_j = d theta_j / d u_i for the ends i, j of halfedge k,
-///   diag[k] = d theta_k / d u_k.
-/// From dtheta_i/dl_i = s(l_i)/2A, dtheta_i/dl_j = -cos(theta_k) s(l_i)/2A and dl/du = lambda^2 / (2 s(l)):
+/// Derivatives of one triangle's angles:
+///   off[k]      = d theta_i / d u_j = d theta_j / d u_i for the ends i, j of halfedge k,
+///   diagonal[k] = d theta_k / d u_k.
+template <class Real>
+struct AngleDerivatives {
+    Real off[3], diagonal[3];
+};
+
+/// For vertex scaling (eps = 0). From dtheta_i/dl_i = s(l_i)/2A, dtheta_i/dl_j = -cos(theta_k) s(l_i)/2A and
+/// dl/du = lambda^2 / (2 s(l)):
 ///   off = (a^2 + b^2 - c^2) / (root (2 - kappa c^2/2)), which is cot(theta)/2 in the plane.
 template <int kappa, class Real>
-inline void scaling_derivatives(const TriangleTerms<Real>& t, Real l0, Real l1, Real l2, Real* off, Real* diag) {
+inline AngleDerivatives<Real> scaling_derivatives(const TriangleTerms<Real>& t, Real l0, Real l1, Real l2) {
     const Real inverse = Real(1) / t.root;
+    AngleDerivatives<Real> d;
     if constexpr (kappa == 0) {
-        off[0] = Real(0.5) * t.numerator[2] * inverse;
-        off[1] = Real(0.5) * t.numerator[0] * inverse;
-        off[2] = Real(0.5) * t.numerator[1] * inverse;
-        diag[0] = -(off[0] + off[2]);
-        diag[1] = -(off[1] + off[0]);
-        diag[2] = -(off[2] + off[1]);
+        d.off[0] = Real(0.5) * t.numerator[2] * inverse;
+        d.off[1] = Real(0.5) * t.numerator[0] * inverse;
+        d.off[2] = Real(0.5) * t.numerator[1] * inverse;
+        d.diagonal[0] = -(d.off[0] + d.off[2]);
+        d.diagonal[1] = -(d.off[1] + d.off[0]);
+        d.diagonal[2] = -(d.off[2] + d.off[1]);
     } else {
         const Real half = Real(kappa) * Real(0.5);
         const Real s0 = l0 * l0, s1 = l1 * l1, s2 = l2 * l2;
         const Real w0 = inverse / (Real(2) - half * s0), w1 = inverse / (Real(2) - half * s1),
                    w2 = inverse / (Real(2) - half * s2);
-        off[0] = (t.numerator[2] + half * (s1 * s2)) * w0;
-        off[1] = (t.numerator[0] + half * (s2 * s0)) * w1;
-        off[2] = (t.numerator[1] + half * (s0 * s1)) * w2;
+        d.off[0] = (t.numerator[2] + half * (s1 * s2)) * w0;
+        d.off[1] = (t.numerator[0] + half * (s2 * s0)) * w1;
+        d.off[2] = (t.numerator[1] + half * (s0 * s1)) * w2;
         // Corner 0 meets halfedges 0 (other end: corner 1) and 2 (other end: corner 2); and so on.
-        diag[0] = -(t.numerator[1] * w0 + t.numerator[2] * w2);
-        diag[1] = -(t.numerator[2] * w1 + t.numerator[0] * w0);
-        diag[2] = -(t.numerator[0] * w2 + t.numerator[1] * w1);
+        d.diagonal[0] = -(t.numerator[1] * w0 + t.numerator[2] * w2);
+        d.diagonal[1] = -(t.numerator[2] * w1 + t.numerator[0] * w0);
+        d.diagonal[2] = -(t.numerator[0] * w2 + t.numerator[1] * w1);
     }
+    return d;
 }
 
-/// The same for any scheme: `n[k][e]` is s(l_k) * d l_k / d u at the tail (e = 0) and the head (e = 1) of halfedge k.
+/// s(l) * d l / d u of one edge at its tail and its head.
+template <class Real>
+struct EdgeSlopes {
+    Real tail, head;
+};
+
+/// For any scheme, from the slopes of its three edges:
 ///   off_ij = (n_jk^j - N_j n_ij^j / s(l_ij)^2) / 2A,  diag_i = -(N_k n_ik^i/s(l_ik)^2 + N_j n_ij^i/s(l_ij)^2) / 2A,
 /// N = numerator/2, 2A = root/2, s(l)^2 = lambda^2 (1 - kappa lambda^2/4).
 template <int kappa, class Real>
-inline void general_derivatives(const TriangleTerms<Real>& t, const Real* l, const Real (*n)[2], Real* off, Real* diag) {
+inline AngleDerivatives<Real> general_derivatives(const TriangleTerms<Real>& t, Real l0, Real l1, Real l2,
+                                                  EdgeSlopes<Real> n0, EdgeSlopes<Real> n1, EdgeSlopes<Real> n2) {
+    const Real quarter = Real(kappa) * Real(0.25);
+    const Real s0 = l0 * l0, s1 = l1 * l1, s2 = l2 * l2;
+    const Real w0 = Real(0.5) / (s0 * (Real(1) - quarter * s0)), w1 = Real(0.5) / (s1 * (Real(1) - quarter * s1)),
+               w2 = Real(0.5) / (s2 * (Real(1) - quarter * s2));
     const Real inverse = Real(2) / t.root;
-    Real sine2[3];
-    for (int k = 0; k < 3; ++k) sine2[k] = l[k] * l[k] * (Real(1) - Real(0.25 * kappa) * l[k] * l[k]);
-    for (int k = 0; k < 3; ++k) {
-        const int next = (k + 1) % 3, prev = (k + 2) % 3;
-        // Halfedge k runs i -> j, next runs j -> third corner.
-        off[k] = inverse * (n[next][0] - Real(0.5) * t.numerator[next] * n[k][1] / sine2[k]);
-        diag[k] = -inverse * Real(0.5) *
-                  (t.numerator[prev] * n[prev][1] / sine2[prev] + t.numerator[next] * n[k][0] / sine2[k]);
-    }
+    AngleDerivatives<Real> d;
+    // Halfedge 0 runs from corner 0 to 1, halfedge 1 from there to corner 2.
+    d.off[0] = inverse * (n1.tail - t.numerator[1] * n0.head * w0);
+    d.off[1] = inverse * (n2.tail - t.numerator[2] * n1.head * w1);
+    d.off[2] = inverse * (n0.tail - t.numerator[0] * n2.head * w2);
+    d.diagonal[0] = -inverse * (t.numerator[2] * n2.head * w2 + t.numerator[1] * n0.tail * w0);
+    d.diagonal[1] = -inverse * (t.numerator[0] * n0.head * w0 + t.numerator[2] * n1.tail * w1);
+    d.diagonal[2] = -inverse * (t.numerator[1] * n1.head * w1 + t.numerator[0] * n2.tail * w2);
+    return d;
 }
 
 }  // namespace ricci

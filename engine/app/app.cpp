@@ -1,10 +1,12 @@
 #include "engine/app/app.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <limits>
 #include <new>
 
 #include "engine/app/commands.h"
@@ -56,6 +58,9 @@ void add_common(CLI::App& command, CommonOptions& common) {
 }
 
 int run(int argc, char** argv) {
+    // Factors come and go at every step; handing their pages back to the system each time costs more than the analysis.
+    mallopt(M_MMAP_THRESHOLD, 1 << 30);
+    mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
     for (int k = 0; k < argc; ++k) command_line() += (k == 0 ? "" : " ") + std::string(argv[k]);
     CLI::App app{"ricci: discrete surface Ricci flow, one mesh or thousands"};
     app.set_version_flag("--version", version_text());

@@ -90,6 +90,8 @@ void catch_signals() {
     action.sa_handler = on_signal;
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
+    // A file that grows past its limit is an error of the write, with a message, not the end of the process.
+    signal(SIGXFSZ, SIG_IGN);
 }
 
 int caught_signal() { return signal_seen; }

@@ -23,7 +23,9 @@ std::vector<KeptFactor> candidates_of(std::vector<SweepSolve>& solves, const Kee
         return a->area_distortion != b->area_distortion ? a->area_distortion < b->area_distortion : a->vertex < b->vertex;
     });
     const std::size_t count = converged.size();
-    const auto first = keep.count < 0 ? count : std::min(count, static_cast<std::size_t>(keep.count) + (keep.best ? 1 : 0));
+    // Best and worst do not count among the `count` others, so a block offers two more.
+    const std::size_t others = keep.count > 0 ? static_cast<std::size_t>(keep.count) + 2 : (keep.best ? 1 : 0);
+    const std::size_t first = keep.count < 0 ? count : std::min(count, others);
     std::vector<KeptFactor> kept;
     // The worst: largest distortion, ties to the lowest vertex.
     const auto worst = std::max_element(converged.begin(), converged.end(), [](const SweepSolve* a, const SweepSolve* b) {

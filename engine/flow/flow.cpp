@@ -38,7 +38,7 @@ SolveOutcome run(Metric& metric, const CurvatureTarget& target, const FlowOption
     if (options.method == Method::gradient) return gradient_descent(metric, target, solve, u);
     const Definiteness definiteness =
         geometry == Geometry::spherical ? Definiteness::indefinite : Definiteness::positive;
-    NewtonSolver newton(metric.surface(), target, definiteness, Ordering::minimum_degree);
+    NewtonSolver newton(metric.surface(), target, definiteness, false);
     return newton.solve(metric, target, solve, u);
 }
 
@@ -170,10 +170,21 @@ void flow_by_packing(const SurfaceMesh& mesh, const FlowOptions& options, FlowRe
         store(metric, target, result);
         return;
     }
-    result.outcome = run(metric, target, options, result.geometry, u);
-    if (result.outcome.status != Status::converged) {
-        result.message = reason(result.outcome.status, result.geometry, options);
-        const Status status = result.outcome.status;
+    // Towards an inadmissible target the circles of a violating set shrink for ever. It is asked for on the way, while the
+    // radii still mean something; any set found is a proof.
+    FlowOptions watched = options;
+    std::int64_t asked = 0;
+    watched.interrupted = [&]() -> std::optional<Status> {
+        if (options.interrupted)
+            if (const auto status = options.interrupted()) return status;
+        const std::int64_t every = options.method == Method::newton ? 1 : 100;
+        ++asked;
+        return asked > 4 && asked % every == 0 && violated(u) ? std::optional(Status::inadmissible_target) : std::nullopt;
+    };
+    result.outcome = run(metric, target, watched, result.geometry, u);
+    const Status status = result.outcome.status;
+    if (status != Status::converged && status != Status::inadmissible_target) {
+        result.message = reason(status, result.geometry, options);
         if (status != Status::cancelled && status != Status::timeout && violated(u))
             result.outcome.status = Status::inadmissible_target;
     }

@@ -1,6 +1,7 @@
 #include "engine/flow/hessian.h"
 
 #include <algorithm>
+#include <cstdint>
 
 namespace ricci {
 namespace {
@@ -13,8 +14,8 @@ void HessianAssembler::build(const Connectivity& c, std::span<const Index> unkno
     unknown_.assign(unknown.begin(), unknown.end());
     const auto n = at(unknown_count);
     // Bucket the lower-triangle entries by column: every unknown's diagonal, then one entry per edge.
-    std::vector<Index> begin(n + 1, 0);
-    for (std::size_t i = 0; i < n; ++i) begin[i + 1] = 1;
+    std::vector<Index> begin(n + 1, 1);
+    begin[0] = 0;
     const auto for_edges = [&](auto&& visit) {
         for (Index h = 0; h < c.halfedge_count(); ++h) {
             const Index t = c.twin[at(h)];
@@ -30,6 +31,7 @@ void HessianAssembler::build(const Connectivity& c, std::span<const Index> unkno
     for_edges([&](Index column, Index row) { rows[at(fill[at(column)]++)] = row; });
     pattern_.column_begin.assign(1, 0);
     pattern_.row.clear();
+    pattern_.row.reserve(rows.size());
     diagonal_position_.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
         std::sort(rows.begin() + begin[i], rows.begin() + begin[i + 1]);
@@ -38,32 +40,107 @@ void HessianAssembler::build(const Connectivity& c, std::span<const Index> unkno
             if (p == begin[i] || rows[at(p)] != rows[at(p) - 1]) pattern_.row.push_back(rows[at(p)]);
         pattern_.column_begin.push_back(static_cast<Index>(pattern_.row.size()));
     }
-    edge_position_.assign(at(c.edge_count), -1);
-    for (Index h = 0; h < c.halfedge_count(); ++h)
-        edge_position_[at(c.edge[at(h)])] = find(unknown_[at(c.tail[at(h)])], unknown_[at(c.head(h))]);
+    edge_position_.assign(at(c.edge_count), kFixed);
+    for (Index h = 0; h < c.halfedge_count(); ++h) {
+        const Index t = c.twin[at(h)];
+        if (t == kNoTwin || t > h)
+            edge_position_[at(c.edge[at(h)])] = find(unknown_[at(c.tail[at(h)])], unknown_[at(c.head(h))]);
+    }
 }
 
 Index HessianAssembler::find(Index i, Index j) const {
-    if (i < 0 || j < 0) return -1;
-    const auto begin = pattern_.row.begin() + pattern_.column_begin[at(std::min(i, j))];
-    const auto end = pattern_.row.begin() + pattern_.column_begin[at(std::min(i, j)) + 1];
-    const auto found = std::lower_bound(begin, end, std::max(i, j));
-    return found != end && *found == std::max(i, j) ? static_cast<Index>(found - pattern_.row.begin()) : -2;
+    if (i < 0 || j < 0) return kFixed;
+    const Index column = std::min(i, j), row = std::max(i, j);
+    const auto begin = pattern_.row.begin() + pattern_.column_begin[at(column)];
+    const auto end = pattern_.row.begin() + pattern_.column_begin[at(column) + 1];
+    const auto found = std::lower_bound(begin, end, row);
+    return found != end && *found == row ? static_cast<Index>(found - pattern_.row.begin()) : kAbsent;
+}
+
+bool HessianAssembler::reserve(std::vector<std::pair<Index, Index>> pairs) {
+    std::vector<std::pair<Index, Index>> fresh;  // (column, row)
+    for (const auto& [a, b] : pairs) {
+        const Index i = unknown_[at(a)], j = unknown_[at(b)];
+        if (find(i, j) == kAbsent) fresh.emplace_back(std::min(i, j), std::max(i, j));
+    }
+    if (fresh.empty()) return false;
+    std::sort(fresh.begin(), fresh.end());
+    fresh.erase(std::unique(fresh.begin(), fresh.end()), fresh.end());
+    // Merge column by column; `shifted` tells where each old entry went.
+    std::vector<Index> shifted(pattern_.row.size());
+    SymmetricPattern grown;
+    grown.row.reserve(pattern_.row.size() + fresh.size());
+    grown.column_begin.reserve(pattern_.column_begin.size());
+    grown.column_begin.push_back(0);
+    auto next = fresh.begin();
+    for (Index column = 0; column < pattern_.size(); ++column) {
+        for (Index p = pattern_.column_begin[at(column)]; p < pattern_.column_begin[at(column) + 1]; ++p) {
+            for (; next != fresh.end() && next->first == column && next->second < pattern_.row[at(p)]; ++next)
+                grown.row.push_back(next->second);
+            shifted[at(p)] = static_cast<Index>(grown.row.size());
+            grown.row.push_back(pattern_.row[at(p)]);
+        }
+        for (; next != fresh.end() && next->first == column; ++next) grown.row.push_back(next->second);
+        grown.column_begin.push_back(static_cast<Index>(grown.row.size()));
+    }
+    pattern_ = std::move(grown);
+    for (Index& p : diagonal_position_) p = shifted[at(p)];
+    for (Index& p : edge_position_)
+        if (p >= 0) p = shifted[at(p)];
+    return true;
 }
 
 bool HessianAssembler::follow_flips(const Connectivity& c, std::span<const Index> touched_faces) {
-    for (const Index f : touched_faces) {
-        for (Index slot = 3 * f; slot < 3 * f + 3; ++slot) {
-            const Index position = find(unknown_[at(c.tail[at(slot)])], unknown_[at(c.head(slot))]);
-            if (position == -2) {
-                const std::vector<Index> unknown = std::move(unknown_);
-                build(c, unknown, static_cast<Index>(diagonal_position_.size()));
-                return true;
+    const auto update = [&](auto&& on_absent) {
+        for (const Index f : touched_faces) {
+            for (Index slot = 3 * f; slot < 3 * f + 3; ++slot) {
+                const Index position = find(unknown_[at(c.tail[at(slot)])], unknown_[at(c.head(slot))]);
+                if (position == kAbsent) on_absent(slot);
+                edge_position_[at(c.edge[at(slot)])] = position;
             }
-            edge_position_[at(c.edge[at(slot)])] = position;
+        }
+    };
+    std::vector<std::pair<Index, Index>> missing;
+    update([&](Index slot) { missing.emplace_back(c.tail[at(slot)], c.head(slot)); });
+    if (missing.empty()) return false;
+    std::vector<Index> seeds;
+    for (const Index f : touched_faces) seeds.push_back(c.tail[at(3 * f)]);
+    const auto likely = likely_flips(c, seeds, 0, 1);
+    missing.insert(missing.end(), likely.begin(), likely.end());
+    reserve(std::move(missing));
+    update([](Index) {});
+    return true;
+}
+
+std::vector<std::pair<Index, Index>> likely_flips(const Connectivity& c, std::span<const Index> seeds, int near,
+                                                  int far) {
+    std::vector<std::pair<Index, Index>> pairs;
+    std::vector<std::uint8_t> inside(at(c.vertex_count), 0), face_inside(at(c.face_count()), 0);
+    for (const Index seed : seeds) inside[at(seed)] = 1;
+    std::vector<Index> faces;
+    for (int ring = 0; ring < far; ++ring) {
+        if (ring == near && near > 0 && seeds.size() <= 8)
+            for (Index v = 0; v < c.vertex_count; ++v)
+                if (inside[at(v)])
+                    for (const Index seed : seeds) pairs.emplace_back(seed, v);
+        const std::size_t known = faces.size();
+        for (Index f = 0; f < c.face_count(); ++f) {
+            const auto h = at(3 * f);
+            if (face_inside[at(f)] || !(inside[at(c.tail[h])] || inside[at(c.tail[h + 1])] || inside[at(c.tail[h + 2])]))
+                continue;
+            face_inside[at(f)] = 1;
+            faces.push_back(f);
+        }
+        for (std::size_t k = known; k < faces.size(); ++k)
+            for (Index slot = 3 * faces[k]; slot < 3 * faces[k] + 3; ++slot) inside[at(c.tail[at(slot)])] = 1;
+    }
+    for (const Index f : faces) {
+        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+            const Index t = c.twin[at(h)];
+            if (t != kNoTwin) pairs.emplace_back(c.tail[at(prev_halfedge(h))], c.tail[at(prev_halfedge(t))]);
         }
     }
-    return false;
+    return pairs;
 }
 
 void HessianAssembler::assemble(const Connectivity& c, std::span<const double> off, std::span<const double> diagonal,

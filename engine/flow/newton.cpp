@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <mutex>
 #include <numeric>
 
 namespace ricci {
@@ -77,6 +78,13 @@ std::vector<Index> unknowns_of_surface(const FlowSurface& surface, const Curvatu
     return unknown;
 }
 
+/// METIS draws from the process's one rand(): two threads at a time would get orderings, and so bits, that depend on chance.
+void choose_dissection(SymmetricSolver& solver, const SymmetricPattern& pattern) {
+    static std::mutex one_at_a_time;
+    const std::lock_guard lock(one_at_a_time);
+    solver.choose_ordering(pattern, Ordering::nested_dissection);
+}
+
 }  // namespace
 
 double residual_max(std::span<const double> curvature, const CurvatureTarget& target) {
@@ -87,33 +95,50 @@ double residual_max(std::span<const double> curvature, const CurvatureTarget& ta
 }
 
 NewtonSolver::NewtonSolver(const FlowSurface& surface, const CurvatureTarget& target, Definiteness definiteness,
-                           Ordering ordering)
+                           bool many)
     : definiteness_(definiteness), solver_(make_symmetric_solver(definiteness)) {
     base_.build(surface.triangulation.connectivity, unknowns_of_surface(surface, target), target.unknown_count);
-    solver_->choose_ordering(base_.pattern(), ordering);
+    if (many) {
+        choose_dissection(*solver_, base_.pattern());
+        solver_->analyze(base_.pattern());
+        ordered_ = at_base_ = true;
+    }
     if (target.scale_free) pinned_ = 0;
     rhs_.resize(at(target.unknown_count));
     direction_.resize(at(target.unknown_count));
 }
 
-void NewtonSolver::return_to_base() {
+void NewtonSolver::start_from_base(const Metric& metric, const CurvatureTarget& target) {
     assembler_ = base_;
-    if (!at_base_) {
-        solver_->analyze(base_.pattern());
-        at_base_ = true;
-    }
-    analysed_ = true;
+    analysed_ = at_base_;
+    factor_is_near_ = false;
+    // Edges will flip where the curvature is to change most: around the cones.
+    constexpr double kCone = 1.0;            // radians
+    constexpr int kNear = 3, kFar = 6;       // rings; measured: fewer re-analyses against more fill
+    std::vector<Index> cones;
+    const auto curvature = metric.curvature();
+    for (std::size_t v = 0; v < curvature.size(); ++v)
+        if (target.unknown[v] >= 0 && std::abs(target.curvature[v] - curvature[v]) > kCone)
+            cones.push_back(static_cast<Index>(v));  // an orbit's first vertex has its number
+    if (cones.empty() || cones.size() > 64) return;
+    if (assembler_.reserve(likely_flips(metric.surface().triangulation.connectivity, cones, kNear, kFar))) analysed_ = false;
 }
 
-bool NewtonSolver::factorize(Metric& metric, SolveOutcome& outcome) {
+bool NewtonSolver::factorize(SolveOutcome& outcome) {
     if (!analysed_) {
-        solver_->analyze(assembler_.pattern());
+        if (ordered_) {
+            solver_->analyze(assembler_.pattern());
+        } else {
+            solver_->choose_ordering(assembler_.pattern(), Ordering::minimum_degree);
+            ordered_ = true;
+        }
         analysed_ = true;
-        at_base_ = false;
+        at_base_ = assembler_.pattern() == base_.pattern();
         ++outcome.symbolic_analyses;
     }
-    assembler_.assemble(metric.connectivity(), metric.off(), metric.diagonal(), pinned_, values_);
-    if (solver_->factorize(values_)) return true;
+    ++outcome.factorizations;
+    factor_is_near_ = solver_->factorize(values_);
+    if (factor_is_near_) return true;
     // Not numerically definite: shift the diagonal, ever more, up to a gradient-like step.
     double scale = 0.0;
     for (const Index p : assembler_.diagonal_positions()) scale = std::max(scale, std::abs(values_[at(p)]));
@@ -128,15 +153,24 @@ bool NewtonSolver::factorize(Metric& metric, SolveOutcome& outcome) {
     return false;
 }
 
-bool NewtonSolver::find_direction(Metric& metric, const CurvatureTarget& target, bool first, SolveOutcome& outcome) {
+bool NewtonSolver::iterate_with_last_factor(double residual, const SolveOptions& options, SolveOutcome& outcome) {
+    // Far from the solution the Hessian near the cones changes too much from step to step for it to pay.
+    constexpr double kClose = 0.5;  // radians
+    constexpr int kBackSolves = 8;  // cost about half a factorisation
+    if (options.factorize_always || !options.convex || !factor_is_near_ || residual > kClose) return false;
+    // Newton squares the residual: a step solved to this accuracy keeps up with it, and the last one need not go beyond
+    // the tolerance.
+    const double accuracy = std::max(std::clamp(0.1 * residual, 1e-7, 1e-2), 0.1 * options.tolerance / residual);
+    const bool solved = conjugate_gradient_.solve(assembler_.pattern(), values_, *solver_, rhs_, accuracy, kBackSolves,
+                                                  direction_);
+    outcome.conjugate_gradient_iterations += conjugate_gradient_.iterations();
+    return solved;
+}
+
+bool NewtonSolver::find_direction(Metric& metric, const CurvatureTarget& target, bool first, double residual,
+                                  const SolveOptions& options, SolveOutcome& outcome) {
     const std::vector<Index> touched = metric.take_touched_faces();
     if (assembler_.follow_flips(metric.connectivity(), touched)) analysed_ = false;
-    SymmetricSolver* solver = solver_.get();
-    if (first) {
-        solver = first_.get();
-    } else if (!factorize(metric, outcome)) {
-        return false;
-    }
     // side * H_folded d = target - K
     const double scale = 1.0 / metric.surface().side;
     for (std::size_t v = 0; v < target.unknown.size(); ++v) {
@@ -144,7 +178,15 @@ bool NewtonSolver::find_direction(Metric& metric, const CurvatureTarget& target,
         rhs_[at(target.unknown[v])] = scale * (target.curvature[v] - metric.curvature()[v]);
     }
     if (pinned_ >= 0) rhs_[at(pinned_)] = 0.0;
-    solver->solve(rhs_, direction_);
+    if (first) {
+        first_->solve(rhs_, direction_);
+    } else {
+        assembler_.assemble(metric.connectivity(), metric.off(), metric.diagonal(), pinned_, values_);
+        if (!iterate_with_last_factor(residual, options, outcome)) {
+            if (!factorize(outcome)) return false;
+            solver_->solve(rhs_, direction_);
+        }
+    }
     if (target.scale_free) {
         const double mean = std::accumulate(direction_.begin(), direction_.end(), 0.0) /
                             static_cast<double>(direction_.size());
@@ -154,14 +196,17 @@ bool NewtonSolver::find_direction(Metric& metric, const CurvatureTarget& target,
 }
 
 void NewtonSolver::prepare_first_factor(Metric& metric, const std::vector<double>& u) {
-    return_to_base();
     first_.reset();
     if (!metric.move_to(u) || metric.flips() > 0 || !metric.evaluate(true)) return;
+    assembler_ = base_;
+    analysed_ = true;
     SolveOutcome ignored;
     auto own = std::move(solver_);
     solver_ = make_symmetric_solver(definiteness_);
-    solver_->choose_ordering(base_.pattern(), Ordering::nested_dissection);
-    if (factorize(metric, ignored) && ignored.shifted_factorizations == 0) {
+    choose_dissection(*solver_, base_.pattern());
+    solver_->analyze(base_.pattern());
+    assembler_.assemble(metric.connectivity(), metric.off(), metric.diagonal(), pinned_, values_);
+    if (factorize(ignored) && ignored.shifted_factorizations == 0) {
         first_ = std::move(solver_);
         first_start_ = u;
     }
@@ -172,7 +217,6 @@ SolveOutcome NewtonSolver::solve(Metric& metric, const CurvatureTarget& target, 
                                  std::vector<double>& u) {
     SolveOutcome outcome;
     Recorder recorder(outcome, options);
-    return_to_base();
     const auto finish = [&](Status status) {
         outcome.status = status;
         outcome.flips = metric.flips();
@@ -183,30 +227,32 @@ SolveOutcome NewtonSolver::solve(Metric& metric, const CurvatureTarget& target, 
         outcome.residual_max = residual_max(metric.curvature(), target);
         return finish(std::isfinite(outcome.residual_max) ? Status::inadmissible_metric : Status::not_finite);
     }
+    start_from_base(metric, target);
     double residual = residual_max(metric.curvature(), target);
     recorder.record(0, residual, 0.0, metric.flips());
+    double best = residual;
     int no_progress = 0;
     for (std::int32_t iteration = 1;; ++iteration) {
         if (residual <= options.tolerance) return finish(Status::converged);
         if (iteration > options.max_iterations) return finish(Status::max_iterations);
-        if (no_progress >= 2) return finish(Status::stalled);
+        if (no_progress >= 3) return finish(Status::stalled);
         if (options.interrupted) {
             if (const auto status = options.interrupted()) return finish(*status);
         }
         const bool first = iteration == 1 && first_ && u == first_start_;
-        if (!find_direction(metric, target, first, outcome)) return finish(Status::factorization_failed);
+        if (!find_direction(metric, target, first, residual, options, outcome)) return finish(Status::factorization_failed);
         const Standing before{slope(metric.curvature(), target, direction_), residual,
                               residual_square(metric.curvature(), target)};
         double step = 1.0;
         bool accepted = false;
         metric.save();
-        for (int halving = 0; halving < 50; ++halving, step *= 0.5) {
+        for (int attempt = 0; attempt < 50; ++attempt) {
             step_along(u, target, direction_, step, trial_);
             if (!metric.move_to(trial_)) return finish(Status::internal_error);
-            accepted = metric.evaluate(true) &&
-                       acceptable(metric, target, direction_, before, step, options.convex);
+            accepted = metric.evaluate(true) && acceptable(metric, target, direction_, before, step, options.convex);
             if (accepted) break;
             metric.restore();
+            step *= 0.5;
         }
         if (!accepted) {
             // Leave the metric where u is, so that callers see the last accepted state.
@@ -215,7 +261,9 @@ SolveOutcome NewtonSolver::solve(Metric& metric, const CurvatureTarget& target, 
         }
         std::swap(u, trial_);
         const double reached = residual_max(metric.curvature(), target);
-        no_progress = step == 1.0 && reached > 0.5 * residual && residual < 1e-6 ? no_progress + 1 : 0;
+        // Against the best so far: at the rounding floor the residual itself goes up and down for ever.
+        no_progress = reached > 0.5 * best && best < 1e-6 ? no_progress + 1 : 0;
+        best = std::min(best, reached);
         residual = reached;
         recorder.record(iteration, residual, step, metric.flips());
     }

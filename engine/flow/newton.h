@@ -11,6 +11,7 @@
 #include "engine/flow/hessian.h"
 #include "engine/flow/metric.h"
 #include "engine/flow/status.h"
+#include "engine/linear/conjugate_gradient.h"
 
 namespace ricci {
 
@@ -35,6 +36,9 @@ struct SolveOptions {
     double tolerance = 1e-10;  // on max |K - target|, radians
     std::int32_t max_iterations = 200;
     bool convex = true;  // the energy is convex: step control by its directional derivative; else by the residual
+    /// Factorise at every step. Otherwise, once the residual is small, a step is solved by conjugate gradients with the
+    /// last factor as preconditioner where a few back-solves suffice, which is cheaper than a factorisation.
+    bool factorize_always = false;
     /// Asked between steps; a status (timeout, cancelled) ends the solve.
     std::function<std::optional<Status>()> interrupted;
     std::function<void(const IterationLog&)> progress;
@@ -46,17 +50,20 @@ struct SolveOutcome {
     double residual_max = 0.0;
     std::int64_t flips = 0;
     std::int32_t shifted_factorizations = 0;  // matrices that needed a diagonal shift to be positive definite
-    std::int32_t symbolic_analyses = 0;       // those made inside the loop, because flips changed the pattern
+    std::int32_t symbolic_analyses = 0;       // the first, and those made because flips left the pattern
+    std::int32_t factorizations = 0, conjugate_gradient_iterations = 0;
     std::vector<IterationLog> log;
 };
 
-/// Newton for many solves on one surface: the fill-reducing ordering is chosen once, a symbolic analysis is repeated
-/// (under that ordering) only when flips put an entry outside the pattern. One per thread.
+/// Newton for many solves on one surface: the fill-reducing ordering is chosen once; under that ordering, a solve is
+/// analysed once with room for the flips expected near its cones, and again only where a flip leaves that room.
+/// One per thread.
 class NewtonSolver {
   public:
     /// `target` decides the unknowns; its curvature may differ from solve to solve.
-    NewtonSolver(const FlowSurface& surface, const CurvatureTarget& target, Definiteness definiteness,
-                 Ordering ordering);
+    /// One solve: minimum degree, analysed once. `many`: nested dissection, and every solve starts from an analysis of the
+    /// base pattern by the same call, so that its bits do not depend on what was solved before.
+    NewtonSolver(const FlowSurface& surface, const CurvatureTarget& target, Definiteness definiteness, bool many);
 
     /// Solves K(u) = target from `u` (V), which becomes the solution. `metric` must stand at the start triangulation.
     /// At an unsuccessful end `u` is the last accepted iterate.
@@ -71,16 +78,21 @@ class NewtonSolver {
     [[nodiscard]] Index pinned() const { return pinned_; }
 
   private:
-    bool factorize(Metric& metric, SolveOutcome& outcome);
-    bool find_direction(Metric& metric, const CurvatureTarget& target, bool first, SolveOutcome& outcome);
-    void return_to_base();
+    bool factorize(SolveOutcome& outcome);
+    bool iterate_with_last_factor(double residual, const SolveOptions& options, SolveOutcome& outcome);
+    bool find_direction(Metric& metric, const CurvatureTarget& target, bool first, double residual,
+                        const SolveOptions& options, SolveOutcome& outcome);
+    void start_from_base(const Metric& metric, const CurvatureTarget& target);
 
     Definiteness definiteness_;
     std::unique_ptr<SymmetricSolver> solver_, first_;
     std::vector<double> first_start_;  // u of the prepared factor
     HessianAssembler base_, assembler_;
-    bool at_base_ = true;     // solver_ is analysed for base_'s pattern
-    bool analysed_ = true;    // solver_ is analysed for assembler_'s pattern
+    bool ordered_ = false;    // solver_ has a fill-reducing ordering
+    bool at_base_ = false;    // solver_ is analysed for base_'s pattern
+    bool analysed_ = false;   // solver_ is analysed for assembler_'s pattern
+    bool factor_is_near_ = false;  // solver_ holds an unshifted factor of this solve
+    ConjugateGradient conjugate_gradient_;
     Index pinned_ = -1;       // unknown held during a scale-free solve
     std::vector<double> values_, rhs_, direction_, trial_;
 };

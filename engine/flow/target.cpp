@@ -151,7 +151,10 @@ std::optional<AdmissibilityViolation> find_violation(const Connectivity& c, std:
     double sum = 0.0, bound = 0.0;
     std::size_t best = 0;
     double best_sum = 0.0, best_bound = 0.0;
-    for (std::size_t k = 0; k + 1 < order.size(); ++k) {
+    // Proper subsets only: all unknowns together are one where others (a free boundary) are fixed.
+    const auto used = std::count_if(corners.begin(), corners.end(), [](const auto& list) { return !list.empty(); });
+    const std::size_t largest = order.size() - (static_cast<std::size_t>(used) == order.size() ? 1 : 0);
+    for (std::size_t k = 0; k < largest; ++k) {
         const Index v = order[k];
         sum += target.curvature[at(v)];
         bound += full(v);

@@ -85,8 +85,7 @@ std::int64_t SweepSurface::shared_bytes() const {
 SweepWorker::SweepWorker(std::shared_ptr<const SweepSurface> surface)
     : shared_(std::move(surface)), target_(shared_->target_) {
     if (shared_->options_.densify && shared_->options_.scheme != Scheme::vertex_scaling) return;  // a mesh per vertex
-    newton_ = std::make_unique<NewtonSolver>(shared_->surface_, target_, Definiteness::positive,
-                                             Ordering::nested_dissection);
+    newton_ = std::make_unique<NewtonSolver>(shared_->surface_, target_, Definiteness::positive, true);
     if (shared_->packing_) {
         packed_ = std::make_unique<PackedMetric>(shared_->surface_, *shared_->packing_, Geometry::euclidean, false);
         return;
@@ -188,11 +187,19 @@ void SweepWorker::solve_packing(SweepSolve& result, const SolveOptions& options)
         return true;
     };
     if (violated({})) return;
-    take(newton_->solve(*packed_, target_, options, u), result);
+    // A violating set shows on the way, while the radii still mean something.
+    SolveOptions watched = options;
+    int asked = 0;
+    watched.interrupted = [&]() -> std::optional<Status> {
+        if (options.interrupted)
+            if (const auto status = options.interrupted()) return status;
+        return ++asked > 4 && violated(u) ? std::optional(Status::inadmissible_target) : std::nullopt;
+    };
+    take(newton_->solve(*packed_, target_, watched, u), result);
     if (result.status == Status::converged) settle(*packed_, target_, options.tolerance, result);
     if (result.status == Status::converged) {
         result.area_distortion = area_distortion_of_areas(shared_->area_, packed_->face_areas());
-    } else if (!violated(u)) {
+    } else if (result.status != Status::inadmissible_target && !violated(u)) {
         result.message = fmt::format("residual {:.3g} after {} steps", result.residual_max, result.newton_iterations);
     }
 }

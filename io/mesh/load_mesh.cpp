@@ -215,11 +215,14 @@ RepairOptions parse_repair(const std::string& text) {
 }
 
 LoadedMesh load_mesh(const std::string& path, const RepairOptions& repair) {
+    return load_mesh_bytes(path, read_file_bytes(path), repair);
+}
+
+LoadedMesh load_mesh_bytes(const std::string& path, std::string bytes, const RepairOptions& repair) {
     LoadedMesh mesh;
     mesh.report.file = path;
     const FileName name = split_name(path);
     mesh.stem = name.stem;
-    std::string bytes = read_file_bytes(path);
     mesh.content_hash = XXH3_64bits(bytes.data(), bytes.size());
     ParsedFile file;
     try {

@@ -11,7 +11,8 @@
 
 namespace ricci {
 
-/// A file that cannot be read at all (missing, permission, truncated gzip, …): exit status 3 if it is the only input.
+/// A file that cannot be read at all (missing, permission, damaged or truncated gzip): exit status 3 if it is
+/// the only input.
 class FileError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
@@ -19,9 +20,11 @@ class FileError : public std::runtime_error {
 
 /// A defect, or a note, about one element of an input.
 struct Defect {
-    std::string code;         // stable identifier, snake_case: non_manifold_edge, unoriented, zero_area_face, …
-    std::string element;      // "vertex", "edge", "face", "line", "file", "component"
-    std::int64_t index = -1;  // zero-based element number in the input's numbering (line numbers from 1); -1: none
+    std::string code;         // stable identifier, snake_case; docs/mesh_input.md lists them all
+    std::string element;      // "vertex", "edge", "face", "line", "file"
+    std::int64_t index = -1;  // zero-based element number in the input's numbering (lines from 1); -1: none,
+                              // or a summary "and N more". Edges have no numbers in files: as in
+                              // Connectivity, by lowest halfedge; the message names the two vertices.
     std::string message;      // a sentence for the user: what, where, and which --repair flag helps
 };
 
@@ -29,34 +32,44 @@ struct Defect {
 struct RepairOptions {
     bool orient = false;           // flip faces so that each orientable component is consistently oriented
     bool weld = false;             // merge vertices with bitwise equal coordinates (-0 = 0)
-    bool drop_degenerate = false;  // drop faces of zero area (after welding: faces with repeated vertices)
+    bool drop_degenerate = false;  // drop faces with fewer than three different vertices; remove faces of
+                                   // zero area without changing the surface (see docs/mesh_input.md)
 };
-/// Parses "orient,weld,drop-degenerate". Throws std::invalid_argument naming the unknown word.
+/// Parses "orient,weld,drop-degenerate" (any of them, any order; empty: none). Throws std::invalid_argument
+/// naming the unknown word.
 RepairOptions parse_repair(const std::string& text);
 
-/// What `ricci info` prints: counts (unset where unknown), quality, notes, defects. Counts are of the triangulated
-/// input over all components, unused vertices left out.
+/// What `ricci info` prints: counts (unset where unknown), quality, notes, defects. Counts are of the
+/// triangulated input (after repair) over all components, unused vertices left out. boundaries and genus are
+/// set for manifolds only, genus for orientable ones only; everything is unset where the file could not be
+/// parsed.
 struct MeshReport {
     std::string file;
     std::optional<Index> vertices, edges, faces, components, boundaries, genus, euler_characteristic;
     std::optional<bool> manifold, oriented;
-    std::optional<double> min_angle_deg, obtuse_fraction;  // obtuse_fraction: faces with an angle above 90 degrees
+    std::optional<double> min_angle_deg, obtuse_fraction;  // obtuse: an angle above 90 degrees by more than
+                                                           // 1e-8 degrees
     std::vector<Defect> notes, errors;
 };
 
 /// One input file after validation. `components` is empty exactly when `report.errors` is not.
 struct LoadedMesh {
     MeshReport report;
-    std::string stem;                     // file name without folder, .gz and format suffix
-    std::uint64_t content_hash = 0;       // XXH3-64 of the file's bytes as stored
-    std::vector<SurfaceMesh> components;  // ordered by lowest vertex. A single component keeps the input's vertex
-                                          // numbers (unused vertices included); several ones are compacted in
-                                          // ascending order, with input_vertex telling the input's numbers.
+    std::string stem;                // file name without folder, .gz and format suffix
+    std::uint64_t content_hash = 0;  // XXH3-64 of the file's bytes as stored
+    // Ordered by lowest vertex. A single component keeps the input's vertex numbers (unused vertices
+    // included); several ones are compacted in ascending order, with input_vertex telling the input's
+    // numbers.
+    std::vector<SurfaceMesh> components;
 };
 
 /// Reads and validates OBJ, OFF, PLY (ASCII, binary), STL (ASCII, binary), each also .gz, and intrinsic .len.
 /// Throws FileError when the file cannot be read; every defect of the contents is reported, not thrown.
 LoadedMesh load_mesh(const std::string& path, const RepairOptions& repair = {});
+
+/// The same for the bytes of a file in memory; the suffix of `path` tells the format. Throws FileError for
+/// gzip data that cannot be unpacked.
+LoadedMesh load_mesh_bytes(const std::string& path, std::string bytes, const RepairOptions& repair = {});
 
 /// Writes points and triangles as OFF, OBJ or PLY (by suffix), or an intrinsic surface as .len; shortest
 /// round-trip decimals. Throws FileError.

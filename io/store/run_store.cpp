@@ -177,10 +177,7 @@ void RunStore::Impl::resume_journal() {
         }
     }
     std::set<std::string> used{journal_path(folder)};
-    for (const auto& [name, item] : state.items) {
-        used.insert({item.file, item.flow_file});
-        for (const JournalEntry& entry : contents.entries) used.insert(folder + "/" + entry.name);
-    }
+    for (const JournalEntry& entry : contents.entries) used.insert(folder + "/" + entry.name);
     for (const auto& entry : fs::directory_iterator(folder))
         if (!used.contains(folder + "/" + entry.path().filename().string())) fs::remove(entry.path());
 }

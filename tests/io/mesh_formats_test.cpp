@@ -82,6 +82,16 @@ TEST(MeshFormats, EveryLineEnding) {
     }
 }
 
+TEST(MeshFormats, FilesAreReadAsTheyAre) {
+    const TemporaryFolder folder;
+    for (const Sample& sample : tetrahedra()) {
+        const LoadedMesh mesh = load_mesh(folder.write(sample.name, sample.bytes));
+        expect_tetrahedron(mesh, sample.name);
+        EXPECT_EQ(mesh.report.file, folder.path(sample.name));
+        EXPECT_EQ(mesh.content_hash, XXH3_64bits(sample.bytes.data(), sample.bytes.size()));
+    }
+}
+
 TEST(MeshFormats, HashAndStemAreOfTheStoredFile) {
     const std::string packed = gzip(tetrahedron_off());
     const LoadedMesh mesh = load_bytes("My.Mesh.OFF.GZ", packed);
@@ -283,6 +293,8 @@ TEST(MeshFormats, IntrinsicErrors) {
     EXPECT_EQ(error("3 1\n0 1 2 1 1 2 -1 -1 -1\n"), "triangle_inequality face 0");
     EXPECT_EQ(error("3 1\n0 1 2 1 1 2.5 -1 -1 -1\n"), "triangle_inequality face 0");
     EXPECT_EQ(error("3 1\n0 1 2 1 1 1.9999999999999998 -1 -1 -1\n"), "");
+    // 1 + 1.25 ulp rounds to the third side, 1 + 1 ulp, yet exceeds it.
+    EXPECT_EQ(error("3 1\n0 1 2 1 2.7755575615628914e-16 1.0000000000000002 -1 -1 -1\n"), "");
     EXPECT_EQ(error("3 1\n0 1 2 1 1 0 -1 -1 -1\n"), "zero_length_edge face 0");
     EXPECT_EQ(error("3 1\n0 1 2 1 1 -1 -1 -1 -1\n"), "negative_length face 0");
     EXPECT_EQ(error("3 1\n0 1 2 1 1 nan -1 -1 -1\n"), "not_finite face 0");

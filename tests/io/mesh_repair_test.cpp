@@ -63,16 +63,25 @@ TEST(MeshTriangulation, PillowOfTwoQuadsGetsDifferentDiagonals) {
     EXPECT_EQ(mesh.report.euler_characteristic, 2);
 }
 
+TEST(MeshTriangulation, PillowOfTwoPentagonsGetsDifferentDiagonals) {
+    const LoadedMesh mesh =
+        load_bytes("q.obj", "v 0 0 0\nv 2 0 0\nv 3 2 0\nv 1 3 0\nv -1 2 0\nf 1 2 3 4 5\nf 5 4 3 2 1\n");
+    EXPECT_EQ(error_codes(mesh), "");
+    EXPECT_EQ(mesh.report.boundaries, 0);
+    EXPECT_EQ(mesh.report.euler_characteristic, 2);
+}
+
 TEST(MeshTriangulation, PolygonsKeepTheirArea) {
     // A comb with reflex and collinear corners, in a slanted plane.
     const std::vector<std::array<double, 2>> outline = {{0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 3}, {2, 3},
                                                         {2, 1}, {1, 1}, {1, 3}, {0, 3}, {0, 2}, {0, 1}};
     std::string text;
     for (const auto& [x, y] : outline) {
-        text += "v " + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(2 * x - y) + "\n";
+        text.append("v ").append(std::to_string(x)).append(" ").append(std::to_string(y));
+        text.append(" ").append(std::to_string(2 * x - y)).append("\n");
     }
     text += "f";
-    for (std::size_t k = 1; k <= outline.size(); ++k) text += " " + std::to_string(k);
+    for (std::size_t k = 1; k <= outline.size(); ++k) text.append(" ").append(std::to_string(k));
     const LoadedMesh mesh = load_bytes("p.obj", text);
     ASSERT_EQ(error_codes(mesh), "");
     EXPECT_EQ(note_codes(mesh), "triangulated");
@@ -87,9 +96,9 @@ TEST(MeshTriangulation, LargePolygonsFinishOrAreRefused) {
         std::string face = "f";
         for (int k = 0; k < corners; ++k) {
             const double angle = 2 * 3.14159265358979323846 * k / corners;
-            text += "v " + std::to_string(1000 * std::cos(angle)) + " " +
-                    std::to_string(1000 * std::sin(angle)) + " 0\n";
-            face += " " + std::to_string(k + 1);
+            text.append("v ").append(std::to_string(1000 * std::cos(angle))).append(" ");
+            text.append(std::to_string(1000 * std::sin(angle))).append(" 0\n");
+            face.append(" ").append(std::to_string(k + 1));
         }
         return load_bytes("d.obj", text + face);
     };

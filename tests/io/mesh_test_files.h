@@ -43,11 +43,10 @@ class TemporaryFolder {
     std::filesystem::path path_;
 };
 
-/// Writes `bytes` to a temporary file of that name and loads it.
+/// Loads `bytes` as if they came from a file of that name.
 inline LoadedMesh load_bytes(const std::string& name, const std::string& bytes,
                              const RepairOptions& repair = {}) {
-    const TemporaryFolder folder;
-    return load_mesh(folder.write(name, bytes), repair);
+    return load_mesh_bytes(name, bytes, repair);
 }
 
 /// The codes of some defects, each once, in order of first occurrence, separated by blanks.

@@ -280,5 +280,19 @@ TEST(StoreCrashes, FullDiskLosesNothing) {
     EXPECT_TRUE(run.failures.empty());
 }
 
+// A limit on file sizes also fails ftruncate; a full disk fails writes only.
+TEST(StoreCrashes, FullDeviceIsNamed) {
+    if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+    const hdf5::Session session;
+    hdf5::OutputFile file("/dev/full");
+    hdf5::write_scalar<Index>(file.root(), "x", 1);
+    try {
+        file.close();
+        FAIL();
+    } catch (const FileError& error) {
+        EXPECT_STREQ(error.what(), "/dev/full: cannot write: No space left on device");
+    }
+}
+
 }  // namespace
 }  // namespace ricci

@@ -165,7 +165,8 @@ class Diagnosis {
         return "its vertices lie exactly on one line, and it cannot be repaired: flipping its longest edge "
                "would "
                "double an edge, or that edge is non-manifold or borders on another face that cannot be "
-               "repaired";
+               "repaired, or "
+               "it belongs to a chain of more than 1000 such faces";
     }
 
     void check_areas() {

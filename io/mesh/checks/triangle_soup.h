@@ -27,7 +27,7 @@ struct TriangleSoup {
 /// Edges are numbered by their lowest halfedge, as in Connectivity.
 struct SoupEdges {
     std::vector<Index> edge;   // 3F
-    std::vector<Index> first;  // E+1: edge e has halfedges[first[e]] … halfedges[first[e+1]-1], ascending
+    std::vector<Index> first;  // E+1: edge e has halfedges[first[e]] ... halfedges[first[e+1]-1], ascending
     std::vector<Index> halfedges;  // 3F
 
     [[nodiscard]] Index count() const { return static_cast<Index>(first.size()) - 1; }
@@ -38,7 +38,7 @@ struct SoupEdges {
 };
 SoupEdges soup_edges(const TriangleSoup& soup, Index vertex_count);
 
-/// Disjoint sets of 0 … count-1; the lowest member represents a set.
+/// Disjoint sets of 0 ... count-1; the lowest member represents a set.
 class DisjointSets {
   public:
     explicit DisjointSets(Index count);

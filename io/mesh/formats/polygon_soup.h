@@ -32,7 +32,7 @@ struct PolygonSoup {
     std::vector<Point> points;
     std::vector<std::int64_t> corners;  // of all faces, one after the other
     std::vector<std::size_t> face_first{
-        0};  // F+1: face f has corners[face_first[f]] … corners[face_first[f+1]-1]
+        0};  // F+1: face f has corners[face_first[f]] ... corners[face_first[f+1]-1]
     std::vector<std::int64_t> face_line;  // F, line in the file; empty for binary files
     std::int64_t index_base = 0;          // what the file calls its first vertex (OBJ: 1), for messages
 

@@ -34,10 +34,9 @@ bool begins_with_solid(std::string_view bytes) {
     return begin != std::string_view::npos && bytes.substr(begin, 5) == "solid";
 }
 
-/// The size decides, because binary headers may begin with "solid" too; where it fits neither, text holds no
-/// NUL.
+/// Binary headers may begin with "solid" too, but a binary file holds a NUL (in its count, below 16.7 million
+/// facets) and text does not.
 bool is_binary(std::string_view bytes) {
-    if (bytes.size() >= kHeader && bytes.size() == kHeader + kFacet * little_endian(bytes, 80)) return true;
     return !begins_with_solid(bytes) || bytes.find('\0') != std::string_view::npos;
 }
 
