@@ -15,10 +15,10 @@ import running
 def solve(row, arguments):
     """The result lines of one mesh; one line saying what happened where the program gave none."""
     command = [arguments.ricci, "flow", row["path"], "--json", "--quiet", "--scheme", "vertex-scaling",
-               "--tolerance", "1e-10", "--threads", str(arguments.threads)]
+               "--tolerance", "1e-10", "--threads", str(arguments.threads), "--timeout", str(arguments.timeout)]
     if not arguments.auto:
         command += ["--target", "uniform" if row["boundaries"] == "0" else "boundary"]
-    status, out, error = running.run(command, arguments.timeout)
+    status, out, error = running.run(command, 3 * arguments.timeout)
     results = running.json_lines(out)
     if results:
         return results
@@ -42,7 +42,7 @@ def main():
     running.add_common_arguments(parser)
     parser.add_argument("--auto", action="store_true", help="no target: the geometry follows the topology")
     parser.add_argument("--only", default="", help="only meshes whose name contains this (writes no file)")
-    parser.add_argument("--timeout", type=float, default=900.0, help="seconds per mesh")
+    parser.add_argument("--timeout", type=float, default=150.0, help="seconds per solve")
     arguments = parser.parse_args()
 
     rows, failures, converged, extended, seconds = [], [], 0, 0, 0.0
@@ -60,8 +60,14 @@ def main():
                 failures.append(f"{cells[0]}: {result['status']}, residual "
                                 f"{running.number(result.get('residual_max'), 3)}: {result.get('message', '')}")
             print(*cells, sep="\t", flush=True)
-    summary = (f"{converged} of {len(rows)} surfaces converged to max |K - target| <= 1e-10, {extended} of all needed "
-               f"extended precision; {seconds:.0f} s in all on {arguments.threads} thread(s).")
+    by_geometry = {}
+    for cells in rows:
+        count = by_geometry.setdefault(cells[4], [0, 0])
+        count[0] += cells[5] == "converged"
+        count[1] += 1
+    parts = ", ".join(f"{geometry} {good} of {total}" for geometry, (good, total) in by_geometry.items())
+    summary = (f"{converged} of {len(rows)} surfaces converged to max |K - target| <= 1e-10 ({parts}); {extended} of all "
+               f"needed extended precision; {seconds:.0f} s in all on {arguments.threads} thread(s).")
     print(summary)
     print(*failures, sep="\n")
     if not arguments.only:

@@ -159,15 +159,16 @@ void report_shares(benchmark::State& state, const Problem& problem, const Pieces
     TimedMetric metric(problem.surface);
     std::vector<double> u(problem.target.curvature.size(), 0.0);
     const SolveOutcome outcome = solver.solve(metric, problem.target, problem.options, u);
-    const double steps = outcome.iterations;
+    const double factorizations = outcome.factorizations + outcome.shifted_factorizations;
+    const double back_solves = outcome.factorizations + outcome.conjugate_gradient_iterations;
     const double move = 1e3 * total(metric.moves.thread), save = 1e3 * total(metric.saves.thread),
                  evaluate = 1e3 * total(metric.evaluations.thread);
-    const double factor = steps * milliseconds(pieces.factor.thread),
+    const double factor = factorizations * milliseconds(pieces.factor.thread),
                  // Every analysis leaves a factor without memory.
-        allocation = (1.0 + outcome.symbolic_analyses) *
+        allocation = outcome.symbolic_analyses *
                      (milliseconds(pieces.first_factor.thread) - milliseconds(pieces.factor.thread)),
-                 assembly = steps * milliseconds(pieces.assembly.thread),
-                 back_solve = steps * milliseconds(pieces.back_solve.thread),
+                 assembly = outcome.iterations * milliseconds(pieces.assembly.thread),
+                 back_solve = back_solves * milliseconds(pieces.back_solve.thread),
                  analyses = outcome.symbolic_analyses * milliseconds(pieces.analysis.thread);
     state.counters["share_move_to"] = move;
     state.counters["share_save"] = save;
@@ -179,6 +180,8 @@ void report_shares(benchmark::State& state, const Problem& problem, const Pieces
     state.counters["share_analyse"] = analyses;
     state.counters["share_rest"] =
         newton_ms - move - save - evaluate - factor - allocation - assembly - back_solve - analyses;
+    state.counters["factorizations"] = outcome.factorizations;
+    state.counters["conjugate_gradient_iterations"] = outcome.conjugate_gradient_iterations;
     state.counters["analyses"] = outcome.symbolic_analyses;
     state.counters["shifted"] = outcome.shifted_factorizations;
     state.counters["flips"] = static_cast<double>(outcome.flips);

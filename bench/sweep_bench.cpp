@@ -40,6 +40,7 @@ class IndependentNewton {
         newton_ = std::make_unique<NewtonSolver>(surface_, target_, Definiteness::positive, true);
         metric_ = std::make_unique<ScaledMetric<double>>(surface_, Geometry::euclidean, false);
         options_.tolerance = kTolerance;
+        options_.factorize_always = true;
     }
 
     SolveOutcome solve(Index vertex, std::vector<double>& u) {

@@ -31,19 +31,21 @@ if(RICCI_CHOLMOD)
     target_include_directories(ricci_engine_dependencies SYSTEM INTERFACE ${CHOLMOD_INCLUDE_DIR})
     target_link_libraries(ricci_engine_dependencies INTERFACE ${CHOLMOD_LIBRARY} OpenMP::OpenMP_CXX)
     target_compile_definitions(ricci_engine_dependencies INTERFACE RICCI_HAS_CHOLMOD=1)
-    # CHOLMOD asks for whatever libblas.so.3 the machine prefers. Linked directly, and found by run path, the serial
-    # OpenBLAS is loaded first and wins even where a threaded one is the machine's default. Named twice: plainly for
-    # the run path, and in one flag that keeps a linker from dropping what only CHOLMOD calls.
-    find_library(RICCI_SERIAL_LAPACK lapack PATH_SUFFIXES openblas-serial NO_DEFAULT_PATH
+    # CHOLMOD asks for whatever libblas.so.3 the machine prefers. Several workers call it at a time, and Debian's serial
+    # OpenBLAS is not safe for that: it hands the same buffer to two callers now and then, which changes bits (see
+    # docs/dependencies.md). Linked directly, and found by run path, the pthread flavour is loaded first and wins; the program sets
+    # it to one thread. Named twice: plainly for the run path, and in one flag that keeps a linker from dropping what only
+    # CHOLMOD calls.
+    find_library(RICCI_LAPACK lapack PATH_SUFFIXES openblas-pthread NO_DEFAULT_PATH
         PATHS "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}" /usr/lib64 /usr/lib)
-    find_library(RICCI_SERIAL_BLAS blas PATH_SUFFIXES openblas-serial NO_DEFAULT_PATH
+    find_library(RICCI_BLAS blas PATH_SUFFIXES openblas-pthread NO_DEFAULT_PATH
         PATHS "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}" /usr/lib64 /usr/lib)
-    if(RICCI_SERIAL_LAPACK MATCHES "serial" AND RICCI_SERIAL_BLAS MATCHES "serial")
+    if(RICCI_LAPACK MATCHES "pthread" AND RICCI_BLAS MATCHES "pthread")
         target_link_libraries(ricci_engine_dependencies INTERFACE
-            ${RICCI_SERIAL_LAPACK} ${RICCI_SERIAL_BLAS}
-            "-Wl,--push-state,--no-as-needed,${RICCI_SERIAL_LAPACK},${RICCI_SERIAL_BLAS},--pop-state")
+            ${RICCI_LAPACK} ${RICCI_BLAS}
+            "-Wl,--push-state,--no-as-needed,${RICCI_LAPACK},${RICCI_BLAS},--pop-state")
     else()
-        message(WARNING "No serial OpenBLAS (Debian: libopenblas-serial-dev): CHOLMOD will use the machine's default "
-            "BLAS; if that one starts threads, workers oversubscribe the processors.")
+        message(WARNING "No pthread OpenBLAS (Debian: libopenblas-pthread-dev): CHOLMOD will use the machine's default "
+            "BLAS. It must be safe for concurrent callers, and should start no threads of its own.")
     endif()
 endif()

@@ -58,7 +58,7 @@ double parse_number(const std::string& text, const std::string& whole) {
     double value = 0.0;
     const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
     const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || text.empty())
+    if (error != std::errc() || end != text.data() + text.size() || text.empty() || !std::isfinite(value))
         throw UsageError(fmt::format("'{}' is not a number, nor [number][*]pi[/number]", whole));
     return value;
 }

@@ -72,7 +72,8 @@ std::string reason(Status status, Geometry geometry, const FlowOptions& options)
         case Status::converged: return {};
         case Status::stalled:
             return geometry == Geometry::spherical
-                       ? "the spherical energy is not convex and the direct Newton found no further descent"
+                       ? fmt::format("the spherical energy is not convex and the direct {} method found no further descent",
+                                     name_of(options.method))
                        : "no step reduces the residual any more: the rounding floor of the evaluation";
         case Status::max_iterations: return "the number of iterations ran out";
         case Status::factorization_failed: return "the Hessian could not be factorised, shifted or not";
@@ -105,8 +106,11 @@ void flow_by_scaling(const SurfaceMesh& mesh, const FlowOptions& options, FlowRe
     }
     result.outcome = run(*metric, target, options, result.geometry, u);
     const Status status = result.outcome.status;
-    if (status == Status::stalled || status == Status::factorization_failed || status == Status::not_finite ||
-        status == Status::inadmissible_metric) {
+    // Precision helps at the rounding floor, not where a non-convex energy has no descent.
+    const bool precision_helps = result.geometry != Geometry::spherical || result.outcome.residual_max < 1e-6;
+    const bool stuck = status == Status::stalled || status == Status::factorization_failed ||
+                       status == Status::not_finite || status == Status::inadmissible_metric;
+    if (stuck && precision_helps) {
         // Evaluate lengths and angles in long double, from the last good u.
         auto extended = std::make_unique<ScaledMetric<long double>>(surface, result.geometry, options.parallel);
         std::vector<double> v = u;

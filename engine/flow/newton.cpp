@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <mutex>
 #include <numeric>
 
 namespace ricci {
@@ -78,13 +77,6 @@ std::vector<Index> unknowns_of_surface(const FlowSurface& surface, const Curvatu
     return unknown;
 }
 
-/// METIS draws from the process's one rand(): two threads at a time would get orderings, and so bits, that depend on chance.
-void choose_dissection(SymmetricSolver& solver, const SymmetricPattern& pattern) {
-    static std::mutex one_at_a_time;
-    const std::lock_guard lock(one_at_a_time);
-    solver.choose_ordering(pattern, Ordering::nested_dissection);
-}
-
 }  // namespace
 
 double residual_max(std::span<const double> curvature, const CurvatureTarget& target) {
@@ -95,11 +87,15 @@ double residual_max(std::span<const double> curvature, const CurvatureTarget& ta
 }
 
 NewtonSolver::NewtonSolver(const FlowSurface& surface, const CurvatureTarget& target, Definiteness definiteness,
-                           bool many)
+                           bool many, std::span<const Index> ordering)
     : definiteness_(definiteness), solver_(make_symmetric_solver(definiteness)) {
     base_.build(surface.triangulation.connectivity, unknowns_of_surface(surface, target), target.unknown_count);
     if (many) {
-        choose_dissection(*solver_, base_.pattern());
+        if (ordering.empty()) {
+            solver_->choose_ordering(base_.pattern(), Ordering::nested_dissection);
+        } else {
+            solver_->use_ordering(ordering);
+        }
         solver_->analyze(base_.pattern());
         ordered_ = at_base_ = true;
     }
@@ -203,7 +199,11 @@ void NewtonSolver::prepare_first_factor(Metric& metric, const std::vector<double
     SolveOutcome ignored;
     auto own = std::move(solver_);
     solver_ = make_symmetric_solver(definiteness_);
-    choose_dissection(*solver_, base_.pattern());
+    if (own->ordering().empty()) {
+        solver_->choose_ordering(base_.pattern(), Ordering::nested_dissection);
+    } else {
+        solver_->use_ordering(own->ordering());
+    }
     solver_->analyze(base_.pattern());
     assembler_.assemble(metric.connectivity(), metric.off(), metric.diagonal(), pinned_, values_);
     if (factorize(ignored) && ignored.shifted_factorizations == 0) {
@@ -248,8 +248,8 @@ SolveOutcome NewtonSolver::solve(Metric& metric, const CurvatureTarget& target, 
         metric.save();
         for (int attempt = 0; attempt < 50; ++attempt) {
             step_along(u, target, direction_, step, trial_);
-            if (!metric.move_to(trial_)) return finish(Status::internal_error);
-            accepted = metric.evaluate(true) && acceptable(metric, target, direction_, before, step, options.convex);
+            // A step so long that the flips do not end is too long.
+            accepted = metric.move_to(trial_) && metric.evaluate(true) && acceptable(metric, target, direction_, before, step, options.convex);
             if (accepted) break;
             metric.restore();
             step *= 0.5;
@@ -300,8 +300,7 @@ SolveOutcome gradient_descent(Metric& metric, const CurvatureTarget& target, con
         metric.save();
         for (int halving = 0; halving < 60; ++halving, taken *= 0.5) {
             step_along(u, target, direction, taken, trial);
-            if (!metric.move_to(trial)) return finish(Status::internal_error);
-            accepted = metric.evaluate(false) && acceptable(metric, target, direction, before, taken, options.convex);
+            accepted = metric.move_to(trial) && metric.evaluate(false) && acceptable(metric, target, direction, before, taken, options.convex);
             if (accepted) break;
             metric.restore();
         }

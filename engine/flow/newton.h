@@ -63,7 +63,11 @@ class NewtonSolver {
     /// `target` decides the unknowns; its curvature may differ from solve to solve.
     /// One solve: minimum degree, analysed once. `many`: nested dissection, and every solve starts from an analysis of the
     /// base pattern by the same call, so that its bits do not depend on what was solved before.
-    NewtonSolver(const FlowSurface& surface, const CurvatureTarget& target, Definiteness definiteness, bool many);
+    /// `ordering`: one chosen by another solver for the same surface and unknowns, to save choosing it again.
+    NewtonSolver(const FlowSurface& surface, const CurvatureTarget& target, Definiteness definiteness, bool many,
+                 std::span<const Index> ordering = {});
+
+    [[nodiscard]] std::span<const Index> ordering() const { return solver_->ordering(); }
 
     /// Solves K(u) = target from `u` (V), which becomes the solution. `metric` must stand at the start triangulation.
     /// At an unsuccessful end `u` is the last accepted iterate.

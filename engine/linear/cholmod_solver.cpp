@@ -4,18 +4,32 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <mutex>
 #include <new>
 #include <stdexcept>
 #include <string>
 
 #include "engine/linear/symmetric_solver.h"
 
+// OpenBLAS's own; absent where another BLAS is linked.
+extern "C" void openblas_set_num_threads(int threads) __attribute__((weak));
+
 namespace ricci {
 namespace {
+
+/// The workers are the threads; a BLAS that starts its own would oversubscribe the processors.
+void keep_blas_serial() {
+    static const bool done = [] {
+        if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
+        return true;
+    }();
+    static_cast<void>(done);
+}
 
 class CholmodSolver final : public SymmetricSolver {
   public:
     explicit CholmodSolver(Definiteness definiteness) {
+        keep_blas_serial();
         cholmod_start(&common_);
         common_.print = 0;
         common_.error_handler = nullptr;
@@ -37,10 +51,19 @@ class CholmodSolver final : public SymmetricSolver {
 
     void choose_ordering(const SymmetricPattern& pattern, Ordering ordering) override {
         common_.method[0].ordering = ordering == Ordering::nested_dissection ? CHOLMOD_METIS : CHOLMOD_AMD;
-        analyze_with(pattern, nullptr);
+        {
+            // METIS draws from the C library's one random sequence, which it seeds itself: two threads at a time would get
+            // orderings, and so bits, that depend on their timing.
+            static std::mutex metis;
+            const std::lock_guard lock(metis);
+            analyze_with(pattern, nullptr);
+        }
         const auto* permutation = static_cast<const int*>(factor_->Perm);
         permutation_.assign(permutation, permutation + factor_->n);
     }
+
+    [[nodiscard]] std::span<const Index> ordering() const override { return permutation_; }
+    void use_ordering(std::span<const Index> ordering) override { permutation_.assign(ordering.begin(), ordering.end()); }
 
     void analyze(const SymmetricPattern& pattern) override {
         common_.method[0].ordering = CHOLMOD_GIVEN;

@@ -17,6 +17,10 @@ class EigenSolver final : public SymmetricSolver {
 
     void choose_ordering(const SymmetricPattern& pattern, Ordering /*ordering*/) override { analyze(pattern); }
 
+    // Eigen orders anew at every analysis, which for minimum degree costs little.
+    [[nodiscard]] std::span<const Index> ordering() const override { return {}; }
+    void use_ordering(std::span<const Index> /*ordering*/) override {}
+
     void analyze(const SymmetricPattern& pattern) override {
         pattern_ = pattern;
         values_.assign(pattern_.row.size(), 1.0);

@@ -35,6 +35,10 @@ class SymmetricSolver {
 
     /// Chooses the fill-reducing ordering for a pattern (the expensive part) and analyses it.
     virtual void choose_ordering(const SymmetricPattern& pattern, Ordering ordering) = 0;
+    /// The ordering in use, to be shared with other solvers of the same size. Empty where the implementation keeps none.
+    [[nodiscard]] virtual std::span<const Index> ordering() const = 0;
+    /// Takes over an ordering instead of choosing one; analyse afterwards.
+    virtual void use_ordering(std::span<const Index> ordering) = 0;
     /// Symbolic analysis of a pattern of the same size under the ordering chosen before: cheap, for patterns that
     /// a few edge flips changed.
     virtual void analyze(const SymmetricPattern& pattern) = 0;

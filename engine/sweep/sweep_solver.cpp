@@ -62,6 +62,8 @@ SweepSurface::SweepSurface(SurfaceMesh mesh, const SweepOptions& options)
     const bool scaling = options.scheme == Scheme::vertex_scaling;
     surface_ = make_flow_surface(mesh_, scaling && options.boundary != Boundary::free, scaling && options.delaunay);
     target_ = make_target(surface_, flow_options(options), Geometry::euclidean, options.boundary);
+    const NewtonSolver ordered(surface_, target_, Definiteness::positive, true);
+    ordering_.assign(ordered.ordering().begin(), ordered.ordering().end());
     if (scaling) {
         start_ = rounded(surface_.triangulation);
     } else {
@@ -85,7 +87,8 @@ std::int64_t SweepSurface::shared_bytes() const {
 SweepWorker::SweepWorker(std::shared_ptr<const SweepSurface> surface)
     : shared_(std::move(surface)), target_(shared_->target_) {
     if (shared_->options_.densify && shared_->options_.scheme != Scheme::vertex_scaling) return;  // a mesh per vertex
-    newton_ = std::make_unique<NewtonSolver>(shared_->surface_, target_, Definiteness::positive, true);
+    newton_ = std::make_unique<NewtonSolver>(shared_->surface_, target_, Definiteness::positive, true,
+                                             shared_->ordering_);
     if (shared_->packing_) {
         packed_ = std::make_unique<PackedMetric>(shared_->surface_, *shared_->packing_, Geometry::euclidean, false);
         return;

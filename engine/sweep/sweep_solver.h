@@ -65,6 +65,7 @@ class SweepSurface {
     FlowSurface surface_;                       // vertex scaling
     IntrinsicTriangulation<double> start_;      // rounded once for all
     CurvatureTarget target_;                    // no cone yet
+    std::vector<Index> ordering_;               // fill-reducing, of the unknowns
     std::optional<CirclePacking> packing_;      // circle packings
 };
 

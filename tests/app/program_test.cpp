@@ -1,0 +1,279 @@
+// The program as a whole: exit status, what it writes, determinism, resuming, verification.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "io/mesh/mesh_file.h"
+#include "io/store/run_store.h"
+#include "tests/support/program.h"
+#include "tests/support/test_data.h"
+
+namespace ricci {
+namespace {
+
+using ricci::testing::ProgramResult;
+using ricci::testing::read_text;
+using ricci::testing::run_ricci;
+using ricci::testing::TemporaryFolder;
+using ricci::testing::write_text;
+using Words = std::vector<std::string>;
+
+std::string make(const TemporaryFolder& folder, const std::string& name, int faces) {
+    const std::string file = folder / (name + ".off");
+    EXPECT_EQ(run_ricci(folder, {"generate", name, "--faces", std::to_string(faces), "-o", file, "-q"}).status, 0);
+    return file;
+}
+
+std::vector<nlohmann::json> objects(const std::string& text) {
+    std::vector<nlohmann::json> result;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) result.push_back(nlohmann::json::parse(line));
+    return result;
+}
+
+bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+/// Everything but seconds, bit for bit.
+void expect_same(const StoredRun& a, const StoredRun& b) {
+    ASSERT_EQ(a.items.size(), b.items.size());
+    for (std::size_t i = 0; i < a.items.size(); ++i) {
+        EXPECT_EQ(a.items[i].item.name, b.items[i].item.name);
+        EXPECT_EQ(a.items[i].item.points, b.items[i].item.points);
+        ASSERT_EQ(a.items[i].sweep.has_value(), b.items[i].sweep.has_value());
+        if (!a.items[i].sweep) continue;
+        const StoredSweep &x = *a.items[i].sweep, &y = *b.items[i].sweep;
+        ASSERT_EQ(x.rows.size(), y.rows.size());
+        for (std::size_t k = 0; k < x.rows.size(); ++k) {
+            EXPECT_EQ(x.rows[k].vertex, y.rows[k].vertex);
+            EXPECT_EQ(x.rows[k].status, y.rows[k].status);
+            EXPECT_EQ(x.rows[k].flips, y.rows[k].flips);
+            EXPECT_EQ(x.rows[k].newton_iterations, y.rows[k].newton_iterations);
+            EXPECT_TRUE(same_bits(x.rows[k].area_distortion, y.rows[k].area_distortion)) << "vertex " << x.rows[k].vertex;
+            EXPECT_TRUE(same_bits(x.rows[k].residual_max, y.rows[k].residual_max)) << "vertex " << x.rows[k].vertex;
+        }
+        EXPECT_EQ(x.best, y.best);
+        EXPECT_EQ(x.worst, y.worst);
+        ASSERT_EQ(x.kept.size(), y.kept.size());
+        for (std::size_t k = 0; k < x.kept.size(); ++k) EXPECT_EQ(x.kept[k].conformal_factor, y.kept[k].conformal_factor);
+    }
+    EXPECT_EQ(a.failures.size(), b.failures.size());
+}
+
+TEST(Program, ExitStatusTellsUsageFromEnvironment) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(run_ricci(folder, {}).status, 2);
+    EXPECT_EQ(run_ricci(folder, {"--help"}).status, 0);
+    EXPECT_EQ(run_ricci(folder, {"--version"}).status, 0);
+    EXPECT_EQ(run_ricci(folder, {"flow"}).status, 2);
+    EXPECT_EQ(run_ricci(folder, {"info", folder / "none.obj"}).status, 3);
+    EXPECT_EQ(run_ricci(folder, {"sweep", "--config", folder / "none.toml"}).status, 3);
+    const std::string mesh = make(folder, "eight", 400);
+    EXPECT_EQ(run_ricci(folder, {"flow", mesh, "--cone=999999:-4pi"}).status, 2);
+    EXPECT_EQ(run_ricci(folder, {"flow", mesh, "--scheme", "nonsense"}).status, 2);
+    EXPECT_EQ(run_ricci(folder, {"sweep", mesh, "--vertices", "sample:2", "-o", "/proc/none/x.h5"}).status, 3);
+    for (const char* command : {"info", "generate", "flow", "sweep", "verify", "export"}) {
+        const ProgramResult help = run_ricci(folder, {command, "--help"});
+        EXPECT_EQ(help.status, 0) << command;
+        EXPECT_NE(help.out.find("Example:"), std::string::npos) << command;
+    }
+}
+
+TEST(Program, SweepIsTheSameForAnyThreadsAndVerifies) {
+    const TemporaryFolder folder;
+    const std::string mesh = make(folder, "eight", 800);
+    const auto sweep = [&](const std::string& out, const char* threads) {
+        const ProgramResult r = run_ricci(folder, {"sweep", mesh, "--vertices", "sample:60:4", "--resolutions", "input,600", "--keep", "4",
+                                                   "--threads", threads, "-o", folder / out});
+        EXPECT_EQ(r.status, 0) << r.err;
+    };
+    sweep("one.h5", "1");
+    sweep("two.h5", "2");
+    sweep("three.h5", "3");
+    const StoredRun one = read_run(folder / "one.h5");
+    ASSERT_EQ(one.items.size(), 2U);
+    EXPECT_EQ(one.items[0].sweep->rows.size(), 60U);
+    expect_same(one, read_run(folder / "two.h5"));
+    expect_same(one, read_run(folder / "three.h5"));
+    const ProgramResult verified = run_ricci(folder, {"verify", folder / "one.h5", "--recompute", "--json"});
+    EXPECT_EQ(verified.status, 0) << verified.err;
+    EXPECT_EQ(objects(verified.out).at(0)["recomputed"].size(), 12U) << "best, worst and four others of two items";
+    EXPECT_EQ(run_ricci(folder, {"export", folder / "one.h5", "-o", folder / "one.csv"}).status, 0);
+    EXPECT_EQ(run_ricci(folder, {"export", folder / "one.h5", "-o", folder / "one.vtu"}).status, 0);
+    EXPECT_NE(read_text(folder / "one.csv").find("area_distortion"), std::string::npos);
+}
+
+TEST(Program, KilledAtRandomMomentsAndResumedEqualsUndisturbed) {
+    const TemporaryFolder folder;
+    const std::string mesh = make(folder, "eight", 800), other = make(folder, "torus", 300);
+    const Words words{"sweep", mesh, other, "--vertices", "sample:150:2", "--threads", "2", "-o"};
+    Words plain = words, killed = words;
+    plain.push_back(folder / "plain.h5");
+    killed.push_back(folder / "killed.h5");
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_EQ(run_ricci(folder, plain).status, 1) << "the torus admits no single cone";
+    const auto whole = std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - start).count();
+    killed.emplace_back("--resume");
+    std::mt19937 random(7);
+    int kills = 0;
+    for (int k = 0; k < 12; ++k) {
+        const int after = static_cast<int>(random() % static_cast<unsigned>(std::max<long>(whole, 2)));
+        kills += run_ricci(folder, killed, after).status == 128 + SIGKILL ? 1 : 0;
+    }
+    EXPECT_GE(kills, 1);
+    EXPECT_EQ(run_ricci(folder, killed).status, 1);
+    expect_same(read_run(folder / "plain.h5"), read_run(folder / "killed.h5"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "killed.h5.parts"));
+    // Everything is finished: a further resume solves nothing and changes nothing.
+    const ProgramResult again = run_ricci(folder, killed);
+    EXPECT_EQ(again.status, 1);
+    expect_same(read_run(folder / "plain.h5"), read_run(folder / "killed.h5"));
+}
+
+TEST(Program, InterruptLeavesAResumableRun) {
+    const TemporaryFolder folder;
+    const std::string mesh = make(folder, "eight", 3000);
+    const Words words{"sweep", mesh, "--threads", "1", "-o", folder / "out.h5", "--resume"};
+    const ProgramResult stopped = run_ricci(folder, words, 700, SIGINT);
+    ASSERT_EQ(stopped.status, 130) << stopped.err;
+    EXPECT_NE(stopped.err.find("--resume"), std::string::npos);
+    EXPECT_TRUE(std::filesystem::exists(folder / "out.h5.parts"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.h5"));
+    Words changed = words;
+    changed.insert(changed.end(), {"--tolerance", "1e-9"});
+    EXPECT_EQ(run_ricci(folder, changed).status, 2) << "another configuration must not continue this run";
+}
+
+TEST(Program, ABadItemDoesNotStopTheBatch) {
+    const TemporaryFolder folder;
+    const std::string mesh = make(folder, "eight", 400);
+    write_text(folder / "broken.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 9\n");
+    // Two components: each an item; a sphere admits no cone, which is recorded.
+    const std::string sphere = make(folder, "sphere", 80);
+    const ProgramResult r = run_ricci(folder, {"sweep", folder / "broken.off", mesh, folder / "missing.obj", sphere, mesh,
+                                               "--vertices", "sample:3", "--json", "-o", folder / "out.h5"});
+    EXPECT_EQ(r.status, 1);
+    const auto lines = objects(r.out);
+    ASSERT_EQ(lines.size(), 5U);
+    EXPECT_EQ(lines[0]["status"], "invalid_input");
+    EXPECT_EQ(lines[1]["solved"], 3);
+    EXPECT_EQ(lines[2]["status"], "invalid_input");
+    EXPECT_EQ(lines[3]["status"], "inadmissible_target");
+    EXPECT_EQ(lines[4]["item"].get<std::string>(), lines[1]["item"].get<std::string>() + "~2");
+    const StoredRun run = read_run(folder / "out.h5");
+    EXPECT_EQ(run.items.size(), 3U);
+    EXPECT_EQ(run.failures.size(), 3U);
+    EXPECT_NE(r.err.find("broken"), std::string::npos);
+}
+
+TEST(Program, ComponentsBecomeItems) {
+    const TemporaryFolder folder;
+    // Two tetrahedra, the second listed first by its faces: items are ordered by lowest vertex.
+    write_text(folder / "two.off",
+               "OFF\n8 8 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n5 0 0\n6 0 0\n5 1 0\n5 0 2\n"
+               "3 4 6 5\n3 4 5 7\n3 5 6 7\n3 6 4 7\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n");
+    const ProgramResult r = run_ricci(folder, {"flow", folder / "two.off", "--target", "uniform", "--json", "-o", folder / "o.h5"});
+    EXPECT_EQ(r.status, 0) << r.err;
+    const auto lines = objects(r.out);
+    ASSERT_EQ(lines.size(), 2U);
+    EXPECT_EQ(lines[0]["item"], "two.c0@4");
+    const StoredRun run = read_run(folder / "o.h5");
+    EXPECT_EQ(run.items.at(0).item.source_vertex, (std::vector<Index>{0, 1, 2, 3}));
+    EXPECT_EQ(run.items.at(1).item.source_vertex, (std::vector<Index>{4, 5, 6, 7}));
+    EXPECT_EQ(run_ricci(folder, {"verify", folder / "o.h5", "--recompute"}).status, 0);
+}
+
+/// A stored solution that is not one is found out, whatever residual it claims.
+TEST(Program, RecomputeFindsAFalseSolution) {
+    const TemporaryFolder folder;
+    const std::string mesh = make(folder, "eight", 400);
+    ASSERT_EQ(run_ricci(folder, {"sweep", mesh, "--vertices", "sample:4", "-o", folder / "good.h5"}).status, 0);
+    StoredRun run = read_run(folder / "good.h5");
+    run.info.fingerprint = "forged";
+    StoredItem& item = run.items.at(0);
+    const auto forge = [&](const std::string& name, double shift, double distortion) {
+        RunStore store(folder / name, run.info, false);
+        store.write_item(item.item);
+        SweepBlock block{item.item.name, item.sweep->rows, item.sweep->kept};
+        for (KeptFactor& kept : block.kept) {
+            kept.conformal_factor[5] += shift;
+            kept.area_distortion += distortion;
+        }
+        for (SweepRow& row : block.rows) row.area_distortion += distortion;
+        store.write_sweep_block(block);
+        store.assemble({item.item.name}, {});
+    };
+    forge("same.h5", 0.0, 0.0);
+    forge("shifted.h5", 1e-6, 0.0);
+    forge("flattered.h5", 0.0, 1e-5);
+    EXPECT_EQ(run_ricci(folder, {"verify", folder / "same.h5", "--recompute"}).status, 0);
+    EXPECT_EQ(run_ricci(folder, {"verify", folder / "shifted.h5"}).status, 0) << "the form is sound";
+    EXPECT_EQ(run_ricci(folder, {"verify", folder / "shifted.h5", "--recompute"}).status, 1);
+    EXPECT_EQ(run_ricci(folder, {"verify", folder / "flattered.h5", "--recompute"}).status, 1);
+}
+
+TEST(Program, FlowRecordsVerifyForEveryGeometrySchemeAndBoundary) {
+    const TemporaryFolder folder;
+    const std::string eight = make(folder, "eight", 400), torus = make(folder, "torus", 300), disk = make(folder, "disk", 200),
+                      pants = make(folder, "pants", 400);
+    const SurfaceMesh surface = load_mesh(pants).components.at(0);
+    const std::vector<std::uint8_t> on_boundary = boundary_vertices(surface.connectivity);
+    const auto interior = std::find(on_boundary.begin(), on_boundary.end(), std::uint8_t{0}) - on_boundary.begin();
+    const std::vector<Words> runs{{eight},
+                                  {eight, "--target", "uniform"},
+                                  {eight, "--cone=3:-4pi"},
+                                  {eight, "--cone=3:-4pi", "--delaunay", "none"},
+                                  {eight, "--scheme", "thurston"},
+                                  {eight, "--scheme", "inversive-distance", "--target", "uniform"},
+                                  {eight, "--scheme", "tangential", "--cone=3:-4pi", "--densify"},
+                                  {torus},
+                                  {torus, "--scheme", "virtual-radius"},
+                                  {disk, "--target", "boundary"},
+                                  {disk, "--geometry", "euclidean", "--boundary", "free"},
+                                  {pants},
+                                  {pants, "--geometry", "hyperbolic", "--scheme", "tangential"},
+                                  {pants, "--cone=" + std::to_string(interior) + ":-2pi"}};
+    for (const Words& words : runs) {
+        Words flow{"flow", "--tolerance", "1e-10", "-o", folder / "f.h5"};
+        flow.insert(flow.end(), words.begin(), words.end());
+        const ProgramResult r = run_ricci(folder, flow);
+        std::string line;
+        for (const std::string& w : words) line += w + " ";
+        EXPECT_EQ(r.status, 0) << line << r.err;
+        const ProgramResult verified = run_ricci(folder, {"verify", folder / "f.h5", "--recompute"});
+        EXPECT_EQ(verified.status, 0) << line << verified.out << verified.err;
+    }
+}
+
+TEST(Program, DryRunWritesNothing) {
+    const TemporaryFolder folder;
+    const std::string mesh = make(folder, "eight", 400);
+    const ProgramResult r = run_ricci(folder, {"sweep", mesh, "--dry-run", "--json", "-o", folder / "out.h5"});
+    EXPECT_EQ(r.status, 0) << r.err;
+    EXPECT_GT(objects(r.out).at(0)["estimated_megabytes"].get<double>(), 0.0);
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.h5"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.h5.parts"));
+}
+
+TEST(Program, ShardsCoverEveryVertexOnce) {
+    const TemporaryFolder folder;
+    const std::string mesh = make(folder, "eight", 400);
+    std::vector<Index> seen;
+    for (const char* shard : {"0/3", "1/3", "2/3"}) {
+        ASSERT_EQ(run_ricci(folder, {"sweep", mesh, "--vertices", "sample:20", "--shard", shard, "-o", folder / "s.h5"}).status, 0);
+        const StoredRun run = read_run(folder / "s.h5");
+        for (const SweepRow& row : run.items.at(0).sweep->rows) seen.push_back(row.vertex);
+    }
+    std::sort(seen.begin(), seen.end());
+    ASSERT_EQ(run_ricci(folder, {"sweep", mesh, "--vertices", "sample:20", "-o", folder / "s.h5"}).status, 0);
+    std::vector<Index> all;
+    const StoredRun run = read_run(folder / "s.h5");
+    for (const SweepRow& row : run.items.at(0).sweep->rows) all.push_back(row.vertex);
+    EXPECT_EQ(seen, all);
+}
+
+}  // namespace
+}  // namespace ricci
