@@ -18,9 +18,15 @@ namespace ricci {
 using Index = std::int32_t;
 inline constexpr Index kNoTwin = -1;
 
-constexpr Index next_halfedge(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
-constexpr Index prev_halfedge(Index h) { return h % 3 == 0 ? h + 2 : h - 1; }
-constexpr Index face_of(Index h) { return h / 3; }
+constexpr Index next_halfedge(Index h) {
+    return h % 3 == 2 ? h - 2 : h + 1;
+}
+constexpr Index prev_halfedge(Index h) {
+    return h % 3 == 0 ? h + 2 : h - 1;
+}
+constexpr Index face_of(Index h) {
+    return h / 3;
+}
 
 using Triangle = std::array<Index, 3>;
 
@@ -67,7 +73,8 @@ Topology topology_of(const Connectivity& connectivity);
 /// Component number of every face, numbered by lowest vertex. // F
 std::vector<Index> face_components(const Connectivity& connectivity);
 
-/// Checks the invariants stated at the top; returns an empty string or what is broken. For tests and assertions.
+/// Checks the invariants stated at the top; returns an empty string or what is broken. For tests and
+/// assertions.
 const char* check_connectivity(const Connectivity& connectivity);
 
 }  // namespace ricci

@@ -9,7 +9,9 @@
 namespace ricci {
 namespace {
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+std::size_t at(Index i) {
+    return static_cast<std::size_t>(i);
+}
 
 /// Relative slack of the test per unit of a/b + b/a: a few roundings of the ratios it is made of.
 template <class Real>
@@ -25,7 +27,8 @@ inline Real cosine_test(Real a, Real b, Real c, Real slack) {
 
 /// Logarithms of the chords of face f in the metric u, relative to the longest.
 template <class Real>
-inline void face_logs(const IntrinsicTriangulation<Real>& t, std::span<const double> u, std::size_t h, Real* x) {
+inline void face_logs(const IntrinsicTriangulation<Real>& t, std::span<const double> u, std::size_t h,
+                      Real* x) {
     const auto& tail = t.connectivity.tail;
     for (std::size_t k = 0; k < 3; ++k) x[k] = t.log_chord[h + k];
     if (!u.empty()) {
@@ -55,7 +58,8 @@ bool edge_fails(const IntrinsicTriangulation<Real>& t, std::span<const double> u
 }
 
 /// Tests the three corners of faces given by their relative log chords, in double. `slack` as in cosine_test.
-RICCI_VECTOR_CLONES void test_block(double (*x)[kFaceBlock], int lanes, double slack, double (*out)[kFaceBlock]) {
+RICCI_VECTOR_CLONES void test_block(double (*x)[kFaceBlock], int lanes, double slack,
+                                    double (*out)[kFaceBlock]) {
 #pragma omp simd
     for (int i = 0; i < lanes; ++i) {
         const double l0 = std::exp(x[0][i]), l1 = std::exp(x[1][i]), l2 = std::exp(x[2][i]);
@@ -65,10 +69,11 @@ RICCI_VECTOR_CLONES void test_block(double (*x)[kFaceBlock], int lanes, double s
     }
 }
 
-/// The corner opposite each halfedge, tested in one pass over all faces. In extended precision the pass is double all the
-/// same, with its slack turned round: it only finds the edges worth a look. // 3F
+/// The corner opposite each halfedge, tested in one pass over all faces. In extended precision the pass is
+/// double all the same, with its slack turned round: it only finds the edges worth a look. // 3F
 template <class Real>
-void test_corners(const IntrinsicTriangulation<Real>& t, std::span<const double> u, std::vector<double>& out) {
+void test_corners(const IntrinsicTriangulation<Real>& t, std::span<const double> u,
+                  std::vector<double>& out) {
     const double slack = std::is_same_v<Real, double> ? kSlack<double> : -kSlack<double>;
     const auto faces = static_cast<std::size_t>(t.connectivity.face_count());
     out.resize(3 * faces);
@@ -109,8 +114,8 @@ FlipCount make_delaunay(IntrinsicTriangulation<Real>& t, std::span<const double>
     }
     FlipCount count;
     const std::int64_t bound = 1000 + 200 * static_cast<std::int64_t>(c.edge_count);
-    // A slot on the stack names an edge through its halfedge; a flip moves two halfedges per face, so the edges are
-    // pushed anew with their new slots and stale entries are recognised by their edge's flag.
+    // A slot on the stack names an edge through its halfedge; a flip moves two halfedges per face, so the
+    // edges are pushed anew with their new slots and stale entries are recognised by their edge's flag.
     while (!w.stack.empty()) {
         const Index h = w.stack.back();
         w.stack.pop_back();
@@ -153,7 +158,8 @@ std::int64_t count_non_delaunay(const IntrinsicTriangulation<Real>& t, std::span
 #define RICCI_INSTANTIATE(Real)                                                                              \
     template FlipCount make_delaunay<Real>(IntrinsicTriangulation<Real>&, std::span<const double>, FlipRule, \
                                            DelaunayWorkspace&);                                              \
-    template std::int64_t count_non_delaunay<Real>(const IntrinsicTriangulation<Real>&, std::span<const double>);
+    template std::int64_t count_non_delaunay<Real>(const IntrinsicTriangulation<Real>&,                      \
+                                                   std::span<const double>);
 RICCI_INSTANTIATE(double)
 RICCI_INSTANTIATE(long double)
 #undef RICCI_INSTANTIATE

@@ -25,8 +25,9 @@ struct DelaunayWorkspace {
 
 /// Flips until every edge is Delaunay in the metric u: edge ij with opposite vertices k, l is Delaunay iff
 ///   (a^2+b^2-c^2)/(ab) + (d^2+e^2-c^2)/(de) >= 0 on chords, c the edge's.
-/// Ties (cocircular to rounding: within 64 eps (a/b + b/a + d/e + e/d)) are left alone. Edges on the boundary and inside one face
-/// never flip. `u`: V, or empty for u = 0. Isometric flips need u = 0. Deterministic: seeds in order of halfedge.
+/// Ties (cocircular to rounding: within 64 eps (a/b + b/a + d/e + e/d)) are left alone. Edges on the boundary
+/// and inside one face never flip. `u`: V, or empty for u = 0. Isometric flips need u = 0. Deterministic:
+/// seeds in order of halfedge.
 template <class Real>
 FlipCount make_delaunay(IntrinsicTriangulation<Real>& triangulation, std::span<const double> u, FlipRule rule,
                         DelaunayWorkspace& workspace);

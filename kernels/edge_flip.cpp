@@ -6,7 +6,9 @@
 namespace ricci {
 namespace {
 
-std::size_t at(Index h) { return static_cast<std::size_t>(h); }
+std::size_t at(Index h) {
+    return static_cast<std::size_t>(h);
+}
 
 }  // namespace
 
@@ -56,8 +58,10 @@ template <class Real>
 Real unfolded_log(std::span<const Real> log_chord, const Connectivity& c, Index h) {
     const Index t = c.twin[at(h)];
     const Real unit = log_chord[at(h)];  // lengths relative to the edge: c = 1
-    const Real a = std::exp(log_chord[at(next_halfedge(h))] - unit), b = std::exp(log_chord[at(prev_halfedge(h))] - unit);
-    const Real d = std::exp(log_chord[at(next_halfedge(t))] - unit), e = std::exp(log_chord[at(prev_halfedge(t))] - unit);
+    const Real a = std::exp(log_chord[at(next_halfedge(h))] - unit),
+               b = std::exp(log_chord[at(prev_halfedge(h))] - unit);
+    const Real d = std::exp(log_chord[at(next_halfedge(t))] - unit),
+               e = std::exp(log_chord[at(prev_halfedge(t))] - unit);
     // Apex over the edge from (0,0) to (1,0), at distance `from_i` of the start and `from_j` of the end.
     const auto height = [](Real from_i, Real from_j) {
         Real x = Real(1), y = std::max(from_i, from_j), z = std::min(from_i, from_j);
@@ -72,9 +76,9 @@ Real unfolded_log(std::span<const Real> log_chord, const Connectivity& c, Index 
     return std::log(std::hypot(foot(b, a) - foot(d, e), height(b, a) + height(d, e))) + unit;
 }
 
-#define RICCI_INSTANTIATE(Real)                                                              \
-    template void flip_edge<Real>(Connectivity&, std::span<Real>, Index, Real);              \
-    template Real ptolemy_log<Real>(std::span<const Real>, const Connectivity&, Index);      \
+#define RICCI_INSTANTIATE(Real)                                                         \
+    template void flip_edge<Real>(Connectivity&, std::span<Real>, Index, Real);         \
+    template Real ptolemy_log<Real>(std::span<const Real>, const Connectivity&, Index); \
     template Real unfolded_log<Real>(std::span<const Real>, const Connectivity&, Index);
 RICCI_INSTANTIATE(double)
 RICCI_INSTANTIATE(long double)

@@ -12,7 +12,9 @@
 namespace ricci {
 namespace {
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+std::size_t at(Index i) {
+    return static_cast<std::size_t>(i);
+}
 
 /// Scratch of one block, one array per halfedge of the face, so that loops over faces load contiguously.
 template <class Real>
@@ -81,18 +83,18 @@ RICCI_ALWAYS_INLINE void scaled_block(BlockChords<Real>& in, BlockResults<Real>&
 }
 
 // One clone per instruction set of each double kernel; long double stays scalar.
-#define RICCI_SCALED(name, kappa)                                                                      \
+#define RICCI_SCALED(name, kappa)                                                                       \
     RICCI_VECTOR_CLONES void scaled_angles_##name(BlockChords<double>& in, BlockResults<double>& out) { \
-        scaled_block<kappa, double, false>(in, out);                                                   \
-    }                                                                                                  \
+        scaled_block<kappa, double, false>(in, out);                                                    \
+    }                                                                                                   \
     RICCI_VECTOR_CLONES void scaled_all_##name(BlockChords<double>& in, BlockResults<double>& out) {    \
-        scaled_block<kappa, double, true>(in, out);                                                    \
-    }                                                                                                  \
+        scaled_block<kappa, double, true>(in, out);                                                     \
+    }                                                                                                   \
     RICCI_VECTOR_CLONES void packed_angles_##name(BlockChords<double>& in, BlockResults<double>& out) { \
-        evaluate_block<kappa, double, false, false>(in, out);                                          \
-    }                                                                                                  \
+        evaluate_block<kappa, double, false, false>(in, out);                                           \
+    }                                                                                                   \
     RICCI_VECTOR_CLONES void packed_all_##name(BlockChords<double>& in, BlockResults<double>& out) {    \
-        evaluate_block<kappa, double, true, false>(in, out);                                           \
+        evaluate_block<kappa, double, true, false>(in, out);                                            \
     }
 RICCI_SCALED(euclidean, 0)
 RICCI_SCALED(hyperbolic, -1)
@@ -106,9 +108,12 @@ template <class Real>
 BlockKernel<Real> scaled_kernel(Geometry geometry, bool derivatives) {
     if constexpr (std::is_same_v<Real, double>) {
         switch (geometry) {
-            case Geometry::hyperbolic: return derivatives ? scaled_all_hyperbolic : scaled_angles_hyperbolic;
-            case Geometry::spherical: return derivatives ? scaled_all_spherical : scaled_angles_spherical;
-            case Geometry::euclidean: break;
+            case Geometry::hyperbolic:
+                return derivatives ? scaled_all_hyperbolic : scaled_angles_hyperbolic;
+            case Geometry::spherical:
+                return derivatives ? scaled_all_spherical : scaled_angles_spherical;
+            case Geometry::euclidean:
+                break;
         }
         return derivatives ? scaled_all_euclidean : scaled_angles_euclidean;
     } else {
@@ -121,9 +126,12 @@ BlockKernel<Real> scaled_kernel(Geometry geometry, bool derivatives) {
 
 BlockKernel<double> packed_kernel(Geometry geometry, bool derivatives) {
     switch (geometry) {
-        case Geometry::hyperbolic: return derivatives ? packed_all_hyperbolic : packed_angles_hyperbolic;
-        case Geometry::spherical: return derivatives ? packed_all_spherical : packed_angles_spherical;
-        case Geometry::euclidean: break;
+        case Geometry::hyperbolic:
+            return derivatives ? packed_all_hyperbolic : packed_angles_hyperbolic;
+        case Geometry::spherical:
+            return derivatives ? packed_all_spherical : packed_angles_spherical;
+        case Geometry::euclidean:
+            break;
     }
     return derivatives ? packed_all_euclidean : packed_angles_euclidean;
 }
@@ -184,7 +192,8 @@ void load_packed(const PackedCircles& in, std::int64_t begin, std::int64_t end, 
             const double chord2 = q * (pair + square[k] + square[j]) / (one_plus[k] * one_plus[j]);
             block.chord[k][i] = chord2 > 0.0 ? std::sqrt(chord2) : 0.0;
             const double difference = 0.5 * q * (square[k] - square[j]) / (one_plus[k] * one_plus[j]);
-            const double at_tail = (1.0 - kappa * square[k]) / one_plus[k], at_head = (1.0 - kappa * square[j]) / one_plus[j];
+            const double at_tail = (1.0 - kappa * square[k]) / one_plus[k],
+                         at_head = (1.0 - kappa * square[j]) / one_plus[j];
             block.slope[k][0][i] = difference + 0.5 * at_tail * chord2;
             block.slope[k][1][i] = -difference + 0.5 * at_head * chord2;
         }
@@ -251,7 +260,8 @@ std::int64_t evaluate_faces(Geometry geometry, const ScaledChords<Real>& chords,
                             });
 }
 
-template std::int64_t evaluate_faces<double>(Geometry, const ScaledChords<double>&, const FaceFields<double>&, bool);
+template std::int64_t evaluate_faces<double>(Geometry, const ScaledChords<double>&, const FaceFields<double>&,
+                                             bool);
 template std::int64_t evaluate_faces<long double>(Geometry, const ScaledChords<long double>&,
                                                   const FaceFields<long double>&, bool);
 
@@ -277,7 +287,8 @@ void packed_edge_lengths(Geometry geometry, const PackedCircles& in, std::span<d
         const double chord = std::sqrt(q * numerator / ((1.0 + kappa * ei) * (1.0 + kappa * ej)));
         length[h] = geometry == Geometry::euclidean
                         ? chord
-                        : (geometry == Geometry::hyperbolic ? 2.0 * std::asinh(chord / 2.0) : 2.0 * std::asin(chord / 2.0));
+                        : (geometry == Geometry::hyperbolic ? 2.0 * std::asinh(chord / 2.0)
+                                                            : 2.0 * std::asin(chord / 2.0));
     }
 }
 
@@ -288,6 +299,7 @@ void sum_corners(std::span<const Index> tail, std::span<const Real> angle, std::
 }
 
 template void sum_corners<double>(std::span<const Index>, std::span<const double>, std::span<double>);
-template void sum_corners<long double>(std::span<const Index>, std::span<const long double>, std::span<long double>);
+template void sum_corners<long double>(std::span<const Index>, std::span<const long double>,
+                                       std::span<long double>);
 
 }  // namespace ricci

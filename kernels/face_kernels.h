@@ -1,4 +1,5 @@
-// The data-parallel heart: every face's corner angles and their derivatives, faces independent of one another.
+// The data-parallel heart: every face's corner angles and their derivatives, faces independent of one
+// another.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +19,13 @@ struct ScaledChords {
 };
 
 /// A circle-packing metric as data (Zhang et al. 2014, The unified discrete surface Ricci flow):
-/// chord^2 = q (2 eta e^{ui+uj} + eps_i e^{2ui} + eps_j e^{2uj}) / ((1 + kappa eps_i e^{2ui})(1 + kappa eps_j e^{2uj})),
-/// q = 1 in the plane, 4 on the sphere and in the hyperbolic plane.
+/// chord^2 = q (2 eta e^{ui+uj} + eps_i e^{2ui} + eps_j e^{2uj}) / ((1 + kappa eps_i e^{2ui})(1 + kappa eps_j
+/// e^{2uj})), q = 1 in the plane, 4 on the sphere and in the hyperbolic plane.
 struct PackedCircles {
-    std::span<const Index> tail;   // 3F
-    std::span<const double> eta;   // 3F, equal on twins
-    std::span<const double> eps;   // V, -1, 0 or 1
-    std::span<const double> u;     // V, log gamma | log tanh(gamma/2) | log tan(gamma/2)
+    std::span<const Index> tail;  // 3F
+    std::span<const double> eta;  // 3F, equal on twins
+    std::span<const double> eps;  // V, -1, 0 or 1
+    std::span<const double> u;    // V, log gamma | log tanh(gamma/2) | log tan(gamma/2)
 };
 
 /// What a pass writes; empty spans are skipped.
@@ -36,9 +37,9 @@ struct FaceFields {
     std::span<Real> area;        // F; Euclidean: exact area, may over- or underflow where chords do
 };
 
-/// Evaluates all faces. Returns how many faces are no triangle of the geometry (broken triangle inequality; on the
-/// sphere also a chord of 2 or more): their angles are the continuous extension 0, 0, pi and their derivatives are not
-/// finite. Runs blocks of faces in parallel where `parallel`; the same bits either way.
+/// Evaluates all faces. Returns how many faces are no triangle of the geometry (broken triangle inequality;
+/// on the sphere also a chord of 2 or more): their angles are the continuous extension 0, 0, pi and their
+/// derivatives are not finite. Runs blocks of faces in parallel where `parallel`; the same bits either way.
 template <class Real>
 std::int64_t evaluate_faces(Geometry geometry, const ScaledChords<Real>& chords, const FaceFields<Real>& out,
                             bool parallel);
@@ -48,8 +49,8 @@ std::int64_t evaluate_faces(Geometry geometry, const PackedCircles& circles, con
 /// Edge lengths (not chords) of a circle-packing metric. // 3F
 void packed_edge_lengths(Geometry geometry, const PackedCircles& circles, std::span<double> length);
 
-/// Total angle at each vertex: angle sums of its corners, in order of face (scatter in fixed order, so the same bits
-/// for any thread count). // V, overwritten
+/// Total angle at each vertex: angle sums of its corners, in order of face (scatter in fixed order, so the
+/// same bits for any thread count). // V, overwritten
 template <class Real>
 void sum_corners(std::span<const Index> tail, std::span<const Real> angle, std::span<Real> total);
 

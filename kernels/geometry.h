@@ -1,5 +1,6 @@
 // Background geometries as policies. A geometry enters the kernels through one number only, its constant
-// curvature kappa: Euclidean 0, hyperbolic -1, spherical +1 (mathematics of section 3 of the thesis, in chords).
+// curvature kappa: Euclidean 0, hyperbolic -1, spherical +1 (mathematics of section 3 of the thesis, in
+// chords).
 //
 // The chord of a length l is lambda = l, 2 sinh(l/2), 2 sin(l/2). With the chords a, b, c of a triangle, the
 // angle opposite a is
@@ -40,9 +41,12 @@ std::string_view name_of(Geometry geometry);
 template <class F>
 decltype(auto) with_geometry(Geometry geometry, F&& f) {
     switch (geometry) {
-        case Geometry::hyperbolic: return f(HyperbolicGeometry{});
-        case Geometry::spherical: return f(SphericalGeometry{});
-        case Geometry::euclidean: break;
+        case Geometry::hyperbolic:
+            return f(HyperbolicGeometry{});
+        case Geometry::spherical:
+            return f(SphericalGeometry{});
+        case Geometry::euclidean:
+            break;
     }
     return f(EuclideanGeometry{});
 }

@@ -22,7 +22,8 @@ IntrinsicTriangulation<Real> intrinsic_triangulation(const SurfaceMesh& mesh) {
             const Point& q = mesh.points[static_cast<std::size_t>(c.head(h))];
             long double squares = 0;
             for (std::size_t k = 0; k < 3; ++k) {
-                const long double difference = static_cast<long double>(q[k]) - static_cast<long double>(p[k]);
+                const long double difference =
+                    static_cast<long double>(q[k]) - static_cast<long double>(p[k]);
                 squares += difference * difference;
             }
             log_length = std::log(squares) / 2;

@@ -7,10 +7,13 @@
 
 namespace ricci {
 
-int hardware_threads() { return tbb::info::default_concurrency(); }
+int hardware_threads() {
+    return tbb::info::default_concurrency();
+}
 
 void run_workers(int workers, const std::function<void(int)>& body) {
-    const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(workers));
+    const tbb::global_control allow(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(workers));
     tbb::task_arena arena(workers);
     arena.execute([&] {
         tbb::task_group group;
@@ -20,7 +23,8 @@ void run_workers(int workers, const std::function<void(int)>& body) {
 }
 
 void with_thread_limit(int threads, const std::function<void()>& body) {
-    const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    const tbb::global_control allow(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(threads));
     tbb::task_arena arena(threads);
     arena.execute(body);
 }

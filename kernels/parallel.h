@@ -13,15 +13,16 @@ namespace ricci {
 /// Threads this process may use (affinity and cgroup limits respected).
 int hardware_threads();
 
-/// Runs body(0) … body(workers-1), at most so many at a time, and waits. A body may wait for another one's progress
-/// only if that one is running already. The first exception is rethrown.
+/// Runs body(0) … body(workers-1), at most so many at a time, and waits. A body may wait for another one's
+/// progress only if that one is running already. The first exception is rethrown.
 void run_workers(int workers, const std::function<void(int)>& body);
 
 /// Runs `body` with parallel loops inside it limited to `threads`.
 void with_thread_limit(int threads, const std::function<void()>& body);
 
-/// Calls body(begin, end) over [0, count) in fixed blocks of `block`; in parallel where asked and worth it. Blocks do
-/// not depend on the number of threads, so a body whose blocks are independent gives the same bits always.
+/// Calls body(begin, end) over [0, count) in fixed blocks of `block`; in parallel where asked and worth it.
+/// Blocks do not depend on the number of threads, so a body whose blocks are independent gives the same bits
+/// always.
 template <class Body>
 void for_blocks(std::int64_t count, std::int64_t block, bool parallel, Body&& body) {
     const std::int64_t blocks = (count + block - 1) / block;
@@ -30,9 +31,10 @@ void for_blocks(std::int64_t count, std::int64_t block, bool parallel, Body&& bo
         for (std::int64_t b = 0; b < blocks; ++b) run(b);
         return;
     }
-    tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, blocks), [&](const tbb::blocked_range<std::int64_t>& range) {
-        for (std::int64_t b = range.begin(); b != range.end(); ++b) run(b);
-    });
+    tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, blocks),
+                      [&](const tbb::blocked_range<std::int64_t>& range) {
+                          for (std::int64_t b = range.begin(); b != range.end(); ++b) run(b);
+                      });
 }
 
 }  // namespace ricci

@@ -8,8 +8,9 @@
 
 namespace ricci {
 
-/// Sum of two numbers minus a third, b + c - a, in Kahan's order: relative error of a few ulps of the data for any
-/// shape (W. Kahan, Miscalculating area and angles of a needle-like triangle). `p` >= `q` are b and c sorted.
+/// Sum of two numbers minus a third, b + c - a, in Kahan's order: relative error of a few ulps of the data
+/// for any shape (W. Kahan, Miscalculating area and angles of a needle-like triangle). `p` >= `q` are b and c
+/// sorted.
 template <class Real>
 inline Real excess(Real a, Real p, Real q) {
     return q + (p - a);
@@ -18,9 +19,10 @@ inline Real excess(Real a, Real p, Real q) {
 /// What a triangle's angles are made of.
 template <class Real>
 struct TriangleTerms {
-    Real root;         // sqrt(16 A^2 - kappa (abc)^2) = 2 sin(theta) s(l) s(l'); zero or NaN-free for a broken triangle
-    Real numerator[3]; // at corner k: b^2 + c^2 - a^2 - kappa b^2 c^2 / 2 = root * cot(theta_k)
-    Real radicand;     // what the root was taken of; not positive: no such triangle
+    Real root;  // sqrt(16 A^2 - kappa (abc)^2) = 2 sin(theta) s(l) s(l'); zero or NaN-free for a broken
+                // triangle
+    Real numerator[3];  // at corner k: b^2 + c^2 - a^2 - kappa b^2 c^2 / 2 = root * cot(theta_k)
+    Real radicand;      // what the root was taken of; not positive: no such triangle
 };
 
 template <int kappa, class Real>
@@ -30,7 +32,8 @@ inline TriangleTerms<Real> triangle_terms(Real l0, Real l1, Real l2) {
     const Real max20 = l2 > l0 ? l2 : l0, min20 = l2 > l0 ? l0 : l2;
     // Corner 0 lies opposite l1, corner 1 opposite l2, corner 2 opposite l0.
     TriangleTerms<Real> t;
-    t.radicand = (l0 + l1 + l2) * excess(l1, max20, min20) * excess(l2, max01, min01) * excess(l0, max12, min12);
+    t.radicand =
+        (l0 + l1 + l2) * excess(l1, max20, min20) * excess(l2, max01, min01) * excess(l0, max12, min12);
     t.numerator[0] = (max20 - l1) * (max20 + l1) + min20 * min20;
     t.numerator[1] = (max01 - l2) * (max01 + l2) + min01 * min01;
     t.numerator[2] = (max12 - l0) * (max12 + l0) + min12 * min12;
@@ -45,8 +48,8 @@ inline TriangleTerms<Real> triangle_terms(Real l0, Real l1, Real l2) {
     return t;
 }
 
-/// Area of the triangle in its geometry: tan(area/2) = root/2 / (1 + sum of cos(h)(l)) for kappa != 0 (the triple
-/// product formula), root/4 for the Euclidean plane.
+/// Area of the triangle in its geometry: tan(area/2) = root/2 / (1 + sum of cos(h)(l)) for kappa != 0 (the
+/// triple product formula), root/4 for the Euclidean plane.
 template <int kappa, class Real>
 inline Real triangle_area(const TriangleTerms<Real>& t, Real l0, Real l1, Real l2) {
     if constexpr (kappa == 0) {
@@ -102,14 +105,17 @@ struct EdgeSlopes {
 };
 
 /// For any scheme, from the slopes of its three edges:
-///   off_ij = (n_jk^j - N_j n_ij^j / s(l_ij)^2) / 2A,  diag_i = -(N_k n_ik^i/s(l_ik)^2 + N_j n_ij^i/s(l_ij)^2) / 2A,
+///   off_ij = (n_jk^j - N_j n_ij^j / s(l_ij)^2) / 2A,  diag_i = -(N_k n_ik^i/s(l_ik)^2 + N_j
+///   n_ij^i/s(l_ij)^2) / 2A,
 /// N = numerator/2, 2A = root/2, s(l)^2 = lambda^2 (1 - kappa lambda^2/4).
 template <int kappa, class Real>
 inline AngleDerivatives<Real> general_derivatives(const TriangleTerms<Real>& t, Real l0, Real l1, Real l2,
-                                                  EdgeSlopes<Real> n0, EdgeSlopes<Real> n1, EdgeSlopes<Real> n2) {
+                                                  EdgeSlopes<Real> n0, EdgeSlopes<Real> n1,
+                                                  EdgeSlopes<Real> n2) {
     const Real quarter = Real(kappa) * Real(0.25);
     const Real s0 = l0 * l0, s1 = l1 * l1, s2 = l2 * l2;
-    const Real w0 = Real(0.5) / (s0 * (Real(1) - quarter * s0)), w1 = Real(0.5) / (s1 * (Real(1) - quarter * s1)),
+    const Real w0 = Real(0.5) / (s0 * (Real(1) - quarter * s0)),
+               w1 = Real(0.5) / (s1 * (Real(1) - quarter * s1)),
                w2 = Real(0.5) / (s2 * (Real(1) - quarter * s2));
     const Real inverse = Real(2) / t.root;
     AngleDerivatives<Real> d;

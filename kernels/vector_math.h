@@ -1,5 +1,5 @@
-// Lets GCC vectorise loops over atan2 and exp with glibc's libmvec (4 ulp) without fast-math, and builds a kernel
-// once per instruction set with run-time dispatch. Include only from the .cpp of a kernel.
+// Lets GCC vectorise loops over atan2 and exp with glibc's libmvec (4 ulp) without fast-math, and builds a
+// kernel once per instruction set with run-time dispatch. Include only from the .cpp of a kernel.
 #pragma once
 
 #include <cmath>
@@ -22,9 +22,9 @@ double exp(double) noexcept;
 
 namespace ricci {
 
-/// Faces per block of a kernel: its scratch arrays stay in the first-level cache. Every loop runs over a multiple of
-/// kVectorPad lanes, padded with equilateral triangles, so that no face ever meets a scalar remainder loop (whose
-/// atan2 rounds differently): a face's bits do not depend on where blocks begin.
+/// Faces per block of a kernel: its scratch arrays stay in the first-level cache. Every loop runs over a
+/// multiple of kVectorPad lanes, padded with equilateral triangles, so that no face ever meets a scalar
+/// remainder loop (whose atan2 rounds differently): a face's bits do not depend on where blocks begin.
 inline constexpr int kFaceBlock = 128;
 inline constexpr int kVectorPad = 8;
 

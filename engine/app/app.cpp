@@ -58,16 +58,19 @@ void add_common(CLI::App& command, CommonOptions& common) {
 }
 
 int run(int argc, char** argv) {
-    // Factors come and go at every step; handing their pages back to the system each time costs more than the analysis.
+    // Factors come and go at every step; handing their pages back to the system each time costs more than the
+    // analysis.
     mallopt(M_MMAP_THRESHOLD, 1 << 30);
     mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
     for (int k = 0; k < argc; ++k) command_line() += (k == 0 ? "" : " ") + std::string(argv[k]);
     CLI::App app{"ricci: discrete surface Ricci flow, one mesh or thousands"};
     app.set_version_flag("--version", version_text());
     app.require_subcommand(1);
-    app.footer("Example: ricci generate eight --faces 5000 -o eight.off && ricci sweep eight.off -o eight.h5\n"
-               "Exit status: 0 all done; 1 some item failed; 2 usage or configuration; 3 environment or input/output; "
-               "130, 143 stopped by a signal (sweeps resume with --resume)");
+    app.footer(
+        "Example: ricci generate eight --faces 5000 -o eight.off && ricci sweep eight.off -o eight.h5\n"
+        "Exit status: 0 all done; 1 some item failed; 2 usage or configuration; 3 environment or "
+        "input/output; "
+        "130, 143 stopped by a signal (sweeps resume with --resume)");
     CommonOptions common;
     Action action;
     add_info(app, common, action);

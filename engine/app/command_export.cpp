@@ -21,7 +21,8 @@ std::vector<PointField> fields_of(const StoredItem& stored) {
     const std::size_t vertices = stored.item.points.size();
     std::vector<PointField> fields;
     if (stored.sweep) {
-        PointField distortion{"area_distortion", std::vector<double>(vertices, kNone)}, steps = distortion, residual = distortion;
+        PointField distortion{"area_distortion", std::vector<double>(vertices, kNone)}, steps = distortion,
+                                                                                        residual = distortion;
         steps.name = "newton_iterations";
         residual.name = "residual_max";
         for (const SweepRow& row : stored.sweep->rows) {
@@ -34,8 +35,10 @@ std::vector<PointField> fields_of(const StoredItem& stored) {
         fields.push_back(std::move(steps));
         fields.push_back(std::move(residual));
         for (const KeptFactor& kept : stored.sweep->kept) {
-            if (kept.vertex == stored.sweep->best) fields.push_back({"best_conformal_factor", kept.conformal_factor});
-            if (kept.vertex == stored.sweep->worst) fields.push_back({"worst_conformal_factor", kept.conformal_factor});
+            if (kept.vertex == stored.sweep->best)
+                fields.push_back({"best_conformal_factor", kept.conformal_factor});
+            if (kept.vertex == stored.sweep->worst)
+                fields.push_back({"worst_conformal_factor", kept.conformal_factor});
         }
     }
     if (stored.flow) {
@@ -47,17 +50,21 @@ std::vector<PointField> fields_of(const StoredItem& stored) {
 }
 
 std::string file_name(std::string item) {
-    std::replace_if(item.begin(), item.end(), [](char c) { return c == '/' || c == '\\' || c == ' '; }, '_');
+    std::replace_if(
+        item.begin(), item.end(), [](char c) { return c == '/' || c == '\\' || c == ' '; }, '_');
     return item;
 }
 
-int export_run(const std::string& path, const std::string& output, const std::string& only, const CommonOptions& common) {
+int export_run(const std::string& path, const std::string& output, const std::string& only,
+               const CommonOptions& common) {
     const StoredRun run = read_run(path);
     const auto suffix = std::filesystem::path(output).extension().string();
     if (suffix == ".csv") {
         export_csv(output, run);
-        if (common.json) print_json({{"file", output}});
-        else fmt::print("wrote {}\n", output);
+        if (common.json)
+            print_json({{"file", output}});
+        else
+            fmt::print("wrote {}\n", output);
         return kDone;
     }
     if (suffix != ".vtu" && suffix != ".vtkhdf")
@@ -65,20 +72,26 @@ int export_run(const std::string& path, const std::string& output, const std::st
     std::vector<const StoredItem*> items;
     for (const StoredItem& item : run.items)
         if (only.empty() || item.item.name == only) items.push_back(&item);
-    if (items.empty()) throw UsageError(fmt::format("{} holds no item{}", path, only.empty() ? "" : " named " + only));
+    if (items.empty())
+        throw UsageError(fmt::format("{} holds no item{}", path, only.empty() ? "" : " named " + only));
     for (const StoredItem* item : items) {
         // One file per item: OUT.vtu for one, OUT.<item>.vtu for several.
         std::string name = output;
         if (items.size() > 1)
-            name = output.substr(0, output.size() - suffix.size()) + "." + file_name(item->item.name) + suffix;
+            name =
+                output.substr(0, output.size() - suffix.size()) + "." + file_name(item->item.name) + suffix;
         if (item->item.points.empty()) {
             spdlog::warn("{} is an intrinsic surface without points: not exported", item->item.name);
             continue;
         }
-        if (suffix == ".vtu") export_vtu(name, item->item, fields_of(*item));
-        else export_vtkhdf(name, item->item, fields_of(*item));
-        if (common.json) print_json({{"item", item->item.name}, {"file", name}});
-        else fmt::print("wrote {}\n", name);
+        if (suffix == ".vtu")
+            export_vtu(name, item->item, fields_of(*item));
+        else
+            export_vtkhdf(name, item->item, fields_of(*item));
+        if (common.json)
+            print_json({{"item", item->item.name}, {"file", name}});
+        else
+            fmt::print("wrote {}\n", name);
     }
     return kDone;
 }
@@ -86,7 +99,8 @@ int export_run(const std::string& path, const std::string& output, const std::st
 }  // namespace
 
 void add_export(CLI::App& app, CommonOptions& common, Action& action) {
-    auto* command = app.add_subcommand("export", "Convert results: .vtu and .vtkhdf for ParaView, .csv for tables");
+    auto* command =
+        app.add_subcommand("export", "Convert results: .vtu and .vtkhdf for ParaView, .csv for tables");
     struct Arguments {
         std::string path, output, item;
     };
@@ -96,7 +110,9 @@ void add_export(CLI::App& app, CommonOptions& common, Action& action) {
     command->add_option("--item", a->item, "Only this item");
     add_common(*command, common);
     command->footer("Example: ricci export eight.h5 -o eight.vtu");
-    command->callback([&common, &action, a] { action = [&common, a] { return export_run(a->path, a->output, a->item, common); }; });
+    command->callback([&common, &action, a] {
+        action = [&common, a] { return export_run(a->path, a->output, a->item, common); };
+    });
 }
 
 }  // namespace ricci::app

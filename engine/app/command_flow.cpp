@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <toml++/toml.h>
 
 #include <chrono>
 #include <cstdio>
 #include <sstream>
-#include <toml++/toml.h>
 
 #include "engine/app/app.h"
 #include "engine/app/commands.h"
@@ -17,8 +17,8 @@ namespace ricci::app {
 namespace {
 
 struct FlowArguments {
-    std::string mesh, output, repair, geometry = "auto", scheme = "vertex-scaling", method = "newton", target, boundary,
-                      delaunay = "isometric";
+    std::string mesh, output, repair, geometry = "auto", scheme = "vertex-scaling", method = "newton", target,
+                                      boundary, delaunay = "isometric";
     std::vector<std::string> cones;
     double tolerance = 1e-10, timeout = 0.0;
     std::int32_t max_iterations = 0;
@@ -46,21 +46,31 @@ FlowOptions flow_options(const FlowArguments& a) {
 std::string to_toml(const FlowArguments& a) {
     toml::array cones;
     for (const std::string& cone : a.cones) cones.push_back(cone);
-    const toml::table root{
-        {"input", toml::table{{"meshes", toml::array{a.mesh}}, {"repair", a.repair}}},
-        {"solve", toml::table{{"geometry", a.geometry}, {"scheme", a.scheme}, {"method", a.method}, {"target", a.target},
-                              {"cones", cones}, {"boundary", a.boundary}, {"delaunay", a.delaunay},
-                              {"tolerance", a.tolerance}, {"max_iterations", a.max_iterations}, {"densify", a.densify}}}};
+    const toml::table root{{"input", toml::table{{"meshes", toml::array{a.mesh}}, {"repair", a.repair}}},
+                           {"solve", toml::table{{"geometry", a.geometry},
+                                                 {"scheme", a.scheme},
+                                                 {"method", a.method},
+                                                 {"target", a.target},
+                                                 {"cones", cones},
+                                                 {"boundary", a.boundary},
+                                                 {"delaunay", a.delaunay},
+                                                 {"tolerance", a.tolerance},
+                                                 {"max_iterations", a.max_iterations},
+                                                 {"densify", a.densify}}}};
     std::ostringstream text;
     text << root << "\n";
     return text.str();
 }
 
-nlohmann::json to_json(const std::string& file, const FlowResult& r, const FlowOptions& options, double seconds) {
+nlohmann::json to_json(const std::string& file, const FlowResult& r, const FlowOptions& options,
+                       double seconds) {
     nlohmann::json log = nlohmann::json::array();
     for (const IterationLog& line : r.outcome.log)
-        log.push_back({{"iteration", line.iteration}, {"residual_max", finite_or_null(line.residual_max)},
-                       {"step", line.step}, {"flips", line.flips}, {"seconds", line.seconds}});
+        log.push_back({{"iteration", line.iteration},
+                       {"residual_max", finite_or_null(line.residual_max)},
+                       {"step", line.step},
+                       {"flips", line.flips},
+                       {"seconds", line.seconds}});
     nlohmann::json object = {{"file", file},
                              {"geometry", name_of(r.geometry)},
                              {"scheme", name_of(options.scheme)},
@@ -84,20 +94,24 @@ nlohmann::json to_json(const std::string& file, const FlowResult& r, const FlowO
     return object;
 }
 
-void print_text(const std::string& item, const FlowResult& r, const FlowOptions& options, bool log, double seconds) {
+void print_text(const std::string& item, const FlowResult& r, const FlowOptions& options, bool log,
+                double seconds) {
     if (log) {
         std::printf("%9s %14s %10s %10s %10s\n", "iteration", "residual_max", "step", "flips", "seconds");
         for (const IterationLog& line : r.outcome.log)
             std::printf("%9d %14.6e %10.3g %10lld %10.4f\n", line.iteration, line.residual_max, line.step,
                         static_cast<long long>(line.flips), line.seconds);
     }
-    fmt::print("{}: {} ({}, {}, {}), residual {:.3g}, {} steps, {} flips, Gauss-Bonnet error {:.2g}, {:.3f} s{}\n", item,
-               name_of(r.outcome.status), name_of(r.geometry), name_of(options.scheme), name_of(options.method),
-               r.outcome.residual_max, r.outcome.iterations, r.outcome.flips, r.gauss_bonnet_error, seconds,
-               r.extended_precision ? ", extended precision" : "");
+    fmt::print(
+        "{}: {} ({}, {}, {}), residual {:.3g}, {} steps, {} flips, Gauss-Bonnet error {:.2g}, {:.3f} s{}\n",
+        item, name_of(r.outcome.status), name_of(r.geometry), name_of(options.scheme),
+        name_of(options.method), r.outcome.residual_max, r.outcome.iterations, r.outcome.flips,
+        r.gauss_bonnet_error, seconds, r.extended_precision ? ", extended precision" : "");
     if (r.packing)
-        fmt::print("  initial packing: lengths off by {:.3g} at most, {:.3g} on average; {} obtuse intersections clipped\n",
-                   r.packing->max_length_error, r.packing->mean_length_error, r.packing->clipped_edges);
+        fmt::print(
+            "  initial packing: lengths off by {:.3g} at most, {:.3g} on average; {} obtuse intersections "
+            "clipped\n",
+            r.packing->max_length_error, r.packing->mean_length_error, r.packing->clipped_edges);
     if (!r.message.empty()) fmt::print("  {}\n", r.message);
 }
 
@@ -119,7 +133,8 @@ int flow(const FlowArguments& a, const CommonOptions& common) {
     if (!loaded.report.errors.empty()) {
         for (const Defect& error : loaded.report.errors) spdlog::error("{}: {}", a.mesh, error.message);
         if (common.json)
-            print_json({{"file", a.mesh}, {"status", name_of(Status::invalid_input)},
+            print_json({{"file", a.mesh},
+                        {"status", name_of(Status::invalid_input)},
                         {"message", loaded.report.errors.front().message}});
         return kSomeFailed;
     }
@@ -145,7 +160,8 @@ int flow(const FlowArguments& a, const CommonOptions& common) {
             return std::nullopt;
         };
         const SurfaceMesh mesh = a.densify ? densified(loaded.components[c], options) : loaded.components[c];
-        const std::string name = item_name(several ? fmt::format("{}.c{}", loaded.stem, c) : loaded.stem, mesh.connectivity.face_count());
+        const std::string name = item_name(several ? fmt::format("{}.c{}", loaded.stem, c) : loaded.stem,
+                                           mesh.connectivity.face_count());
         FlowResult result;
         with_thread_limit(common.resolved_threads(), [&] { result = solve_flow(mesh, options); });
         const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
@@ -179,18 +195,32 @@ void add_flow(CLI::App& app, CommonOptions& common, Action& action) {
     command->add_option("MESH", a->mesh, "OBJ, OFF, PLY, STL (each also .gz) or .len")->required();
     command->add_option("-o,--output", a->output, "Result file (HDF5)");
     command->add_flag("--log", a->log, "Print the residual of every step");
-    command->add_option("--geometry", a->geometry, "auto, euclidean, hyperbolic, spherical")->capture_default_str();
-    command->add_option("--scheme", a->scheme, "vertex-scaling, inversive-distance, thurston, tangential, virtual-radius")->capture_default_str();
+    command->add_option("--geometry", a->geometry, "auto, euclidean, hyperbolic, spherical")
+        ->capture_default_str();
+    command
+        ->add_option("--scheme", a->scheme,
+                     "vertex-scaling, inversive-distance, thurston, tangential, virtual-radius")
+        ->capture_default_str();
     command->add_option("--method", a->method, "newton, gradient")->capture_default_str();
-    command->add_option("--tolerance", a->tolerance, "On max |K - target|, radians")->capture_default_str()->check(CLI::PositiveNumber);
-    command->add_option("--max-iterations", a->max_iterations, "0: 200 Newton steps, 100000 gradient steps")->check(CLI::NonNegativeNumber);
-    command->add_option("--target", a->target, "flat, uniform, boundary, or a file with one curvature per line (radians)");
-    command->add_option("--cone", a->cones, "VERTEX:CURVATURE, repeatable; CURVATURE like -4pi, pi/2, -6.28")->take_all()->allow_extra_args(false);
-    command->add_option("--boundary", a->boundary, "geodesic (through the double), free (u = 0), curvature (as the target says)");
-    command->add_option("--delaunay", a->delaunay, "isometric, or none: start from the input triangulation")->capture_default_str();
+    command->add_option("--tolerance", a->tolerance, "On max |K - target|, radians")
+        ->capture_default_str()
+        ->check(CLI::PositiveNumber);
+    command->add_option("--max-iterations", a->max_iterations, "0: 200 Newton steps, 100000 gradient steps")
+        ->check(CLI::NonNegativeNumber);
+    command->add_option("--target", a->target,
+                        "flat, uniform, boundary, or a file with one curvature per line (radians)");
+    command->add_option("--cone", a->cones, "VERTEX:CURVATURE, repeatable; CURVATURE like -4pi, pi/2, -6.28")
+        ->take_all()
+        ->allow_extra_args(false);
+    command->add_option("--boundary", a->boundary,
+                        "geodesic (through the double), free (u = 0), curvature (as the target says)");
+    command->add_option("--delaunay", a->delaunay, "isometric, or none: start from the input triangulation")
+        ->capture_default_str();
     command->add_option("--repair", a->repair, "Changes to make: orient,weld,drop-degenerate");
-    command->add_flag("--densify", a->densify, "Refine around the cones and raise their valence first (circle packings)");
-    command->add_option("--timeout", a->timeout, "Seconds for the solve; 0: none")->check(CLI::NonNegativeNumber);
+    command->add_flag("--densify", a->densify,
+                      "Refine around the cones and raise their valence first (circle packings)");
+    command->add_option("--timeout", a->timeout, "Seconds for the solve; 0: none")
+        ->check(CLI::NonNegativeNumber);
     add_common(*command, common);
     command->footer("Example: ricci flow eight.off --cone=0:-4pi --log -o eight.h5");
     command->callback([&common, &action, a] { action = [&common, a] { return flow(*a, common); }; });

@@ -18,7 +18,8 @@ nlohmann::json or_null(const std::optional<T>& value) {
 nlohmann::json to_json(const std::vector<Defect>& defects) {
     nlohmann::json list = nlohmann::json::array();
     for (const Defect& d : defects)
-        list.push_back({{"code", d.code}, {"element", d.element}, {"index", d.index}, {"message", d.message}});
+        list.push_back(
+            {{"code", d.code}, {"element", d.element}, {"index", d.index}, {"message", d.message}});
     return list;
 }
 
@@ -46,11 +47,14 @@ std::string or_dash(const std::optional<T>& value) {
 
 void print_text(const MeshReport& r) {
     std::string text = fmt::format("{}\n", r.file);
-    text += fmt::format("  vertices {}  edges {}  faces {}\n", or_dash(r.vertices), or_dash(r.edges), or_dash(r.faces));
-    text += fmt::format("  components {}  boundaries {}  genus {}  Euler characteristic {}\n", or_dash(r.components),
-                        or_dash(r.boundaries), or_dash(r.genus), or_dash(r.euler_characteristic));
-    text += fmt::format("  manifold {}  oriented {}  smallest angle {} deg  obtuse faces {}\n", or_dash(r.manifold),
-                        or_dash(r.oriented), or_dash(r.min_angle_deg), or_dash(r.obtuse_fraction));
+    text += fmt::format("  vertices {}  edges {}  faces {}\n", or_dash(r.vertices), or_dash(r.edges),
+                        or_dash(r.faces));
+    text += fmt::format("  components {}  boundaries {}  genus {}  Euler characteristic {}\n",
+                        or_dash(r.components), or_dash(r.boundaries), or_dash(r.genus),
+                        or_dash(r.euler_characteristic));
+    text += fmt::format("  manifold {}  oriented {}  smallest angle {} deg  obtuse faces {}\n",
+                        or_dash(r.manifold), or_dash(r.oriented), or_dash(r.min_angle_deg),
+                        or_dash(r.obtuse_fraction));
     for (const Defect& d : r.notes) text += fmt::format("  note: {}\n", d.message);
     for (const Defect& d : r.errors) text += fmt::format("  error [{}]: {}\n", d.code, d.message);
     std::fputs(text.c_str(), stdout);
@@ -82,7 +86,8 @@ int info(const std::vector<std::string>& arguments, const RepairOptions& repair,
 }  // namespace
 
 void add_info(CLI::App& app, CommonOptions& common, Action& action) {
-    auto* command = app.add_subcommand("info", "Topology and quality of meshes, and every defect with element numbers");
+    auto* command =
+        app.add_subcommand("info", "Topology and quality of meshes, and every defect with element numbers");
     auto files = std::make_shared<std::vector<std::string>>();
     auto repair = std::make_shared<std::string>();
     command->add_option("MESH", *files, "Files, folders or globs")->required();

@@ -19,34 +19,48 @@ struct SweepArguments {
 };
 
 nlohmann::json to_json(const ItemSummary& s) {
-    const auto vertex = [](const std::optional<SweepRow>& row) { return row ? nlohmann::json(row->vertex) : nlohmann::json(); };
+    const auto vertex = [](const std::optional<SweepRow>& row) {
+        return row ? nlohmann::json(row->vertex) : nlohmann::json();
+    };
     const auto distortion = [](const std::optional<SweepRow>& row) {
         return row ? finite_or_null(row->area_distortion) : nlohmann::json();
     };
     const double rate = s.seconds > 0.0 ? static_cast<double>(s.solved + s.failed) / s.seconds : 0.0;
-    return {{"item", s.name},          {"vertices", s.vertices},
-            {"solved", s.solved},      {"failed", s.failed},
-            {"best_vertex", vertex(s.best)}, {"best_area_distortion", distortion(s.best)},
-            {"worst_vertex", vertex(s.worst)}, {"worst_area_distortion", distortion(s.worst)},
-            {"seconds", s.seconds},    {"solves_per_second", rate},
-            {"status", name_of(s.status)}, {"message", s.message}};
+    return {{"item", s.name},
+            {"vertices", s.vertices},
+            {"solved", s.solved},
+            {"failed", s.failed},
+            {"best_vertex", vertex(s.best)},
+            {"best_area_distortion", distortion(s.best)},
+            {"worst_vertex", vertex(s.worst)},
+            {"worst_area_distortion", distortion(s.worst)},
+            {"seconds", s.seconds},
+            {"solves_per_second", rate},
+            {"status", name_of(s.status)},
+            {"message", s.message}};
 }
 
 void print_table(const std::vector<ItemSummary>& summaries) {
     std::size_t width = 4;
     for (const ItemSummary& s : summaries) width = std::max(width, s.name.size());
-    fmt::print("{:<{}}  {:>8}  {:>7}  {:>6}  {:>8}  {:>10}  {:>8}  {:>10}  {:>9}  {:>8}\n", "item", width, "vertices", "solved",
-               "failed", "best", "distortion", "worst", "distortion", "seconds", "solves/s");
+    fmt::print("{:<{}}  {:>8}  {:>7}  {:>6}  {:>8}  {:>10}  {:>8}  {:>10}  {:>9}  {:>8}\n", "item", width,
+               "vertices", "solved", "failed", "best", "distortion", "worst", "distortion", "seconds",
+               "solves/s");
     for (const ItemSummary& s : summaries) {
         if (s.status != Status::converged) {
             fmt::print("{:<{}}  {}: {}\n", s.name, width, name_of(s.status), s.message);
             continue;
         }
-        const auto vertex = [](const auto& row) { return row ? fmt::format("{}", row->vertex) : std::string("-"); };
-        const auto value = [](const auto& row) { return row ? fmt::format("{:.6g}", row->area_distortion) : std::string("-"); };
+        const auto vertex = [](const auto& row) {
+            return row ? fmt::format("{}", row->vertex) : std::string("-");
+        };
+        const auto value = [](const auto& row) {
+            return row ? fmt::format("{:.6g}", row->area_distortion) : std::string("-");
+        };
         const double rate = s.seconds > 0.0 ? static_cast<double>(s.solved + s.failed) / s.seconds : 0.0;
-        fmt::print("{:<{}}  {:>8}  {:>7}  {:>6}  {:>8}  {:>10}  {:>8}  {:>10}  {:>9.2f}  {:>8.1f}\n", s.name, width, s.vertices,
-                   s.solved, s.failed, vertex(s.best), value(s.best), vertex(s.worst), value(s.worst), s.seconds, rate);
+        fmt::print("{:<{}}  {:>8}  {:>7}  {:>6}  {:>8}  {:>10}  {:>8}  {:>10}  {:>9.2f}  {:>8.1f}\n", s.name,
+                   width, s.vertices, s.solved, s.failed, vertex(s.best), value(s.best), vertex(s.worst),
+                   value(s.worst), s.seconds, rate);
     }
 }
 
@@ -62,15 +76,19 @@ int dry_run(const SweepConfig& config, const std::vector<std::string>& files, co
             SweepWorker worker(task.surface);
             const SweepSolve probe = worker.solve(task.vertices[task.vertices.size() / 2], {});
             const double seconds = probe.seconds * static_cast<double>(task.vertices.size()) / threads;
-            const double megabytes = static_cast<double>(surface.shared_bytes() + threads * surface.worker_bytes()) / 1e6;
+            const double megabytes =
+                static_cast<double>(surface.shared_bytes() + threads * surface.worker_bytes()) / 1e6;
             const std::string name = run.summaries()[task.item].name;
             total += seconds;
             if (common.json) {
-                print_json({{"item", name}, {"vertices", task.vertices.size()}, {"seconds_per_solve", probe.seconds},
-                            {"estimated_seconds", seconds}, {"estimated_megabytes", megabytes}});
+                print_json({{"item", name},
+                            {"vertices", task.vertices.size()},
+                            {"seconds_per_solve", probe.seconds},
+                            {"estimated_seconds", seconds},
+                            {"estimated_megabytes", megabytes}});
             } else {
-                fmt::print("{}: {} solves, about {:.3g} s each, {:.3g} s on {} threads, {:.0f} MB\n", name, task.vertices.size(),
-                           probe.seconds, seconds, threads, megabytes);
+                fmt::print("{}: {} solves, about {:.3g} s each, {:.3g} s on {} threads, {:.0f} MB\n", name,
+                           task.vertices.size(), probe.seconds, seconds, threads, megabytes);
             }
         }
     }
@@ -87,15 +105,19 @@ int sweep(const SweepConfig& config, const CommonOptions& common, bool dry) {
     options.max_memory = config.max_memory.empty() ? 0 : parse_bytes(config.max_memory);
     options.timeout_seconds = config.timeout;
     options.stop = [] { return caught_signal() != 0; };
-    RunStore store(config.output, make_run_info(to_toml(config, false), to_toml(config, true), options.threads), config.resume);
+    RunStore store(config.output,
+                   make_run_info(to_toml(config, false), to_toml(config, true), options.threads),
+                   config.resume);
     for (const std::string& note : store.notes()) spdlog::warn("{}", note);
     catch_signals();
     ProgressLine progress(common.quiet);
     SweepRun run(config, files, &store, progress);
-    run_sweeps(files.size(), [&](std::size_t file) { return run.open(file); }, run, options);
+    run_sweeps(
+        files.size(), [&](std::size_t file) { return run.open(file); }, run, options);
     progress.clear();
     if (const int signal = caught_signal(); signal != 0) {
-        spdlog::warn("stopped by a signal; what is finished is in {}.parts: continue with --resume", config.output);
+        spdlog::warn("stopped by a signal; what is finished is in {}.parts: continue with --resume",
+                     config.output);
         return 128 + signal;
     }
     const std::vector<ItemSummary> summaries = run.summaries();
@@ -140,30 +162,42 @@ SweepConfig merged(const CLI::App& command, const SweepArguments& a) {
 }  // namespace
 
 void add_sweep(CLI::App& app, CommonOptions& common, Action& action) {
-    auto* command = app.add_subcommand("sweep", "The main job: every vertex in turn as the only cone, of every mesh");
+    auto* command =
+        app.add_subcommand("sweep", "The main job: every vertex in turn as the only cone, of every mesh");
     auto a = std::make_shared<SweepArguments>();
     SweepConfig& v = a->values;
     command->add_option("MESH", v.meshes, "Files, folders or globs");
-    command->add_option("--config", a->config, "TOML file with [input], [solve], [sweep], [run]; options given here win");
+    command->add_option("--config", a->config,
+                        "TOML file with [input], [solve], [sweep], [run]; options given here win");
     command->add_option("-o,--output", v.output, "Result file (HDF5); default sweep.h5");
     command->add_option("--vertices", v.vertices, "all, sample:N[:SEED], or a file with vertex numbers");
-    command->add_option("--resolutions", v.resolutions, "Face counts, or input: 5000,10000,input")->delimiter(',');
-    command->add_option("--keep", v.keep, "Conformal factors to store: none, best, worst, best,worst (default), all, or a number");
-    command->add_option("--scheme", v.scheme, "vertex-scaling, inversive-distance, thurston, tangential, virtual-radius");
-    command->add_option("--boundary", v.boundary, "geodesic, or free: u = 0 there, the boundary takes what the cone leaves");
+    command->add_option("--resolutions", v.resolutions, "Face counts, or input: 5000,10000,input")
+        ->delimiter(',');
+    command->add_option(
+        "--keep", v.keep,
+        "Conformal factors to store: none, best, worst, best,worst (default), all, or a number");
+    command->add_option("--scheme", v.scheme,
+                        "vertex-scaling, inversive-distance, thurston, tangential, virtual-radius");
+    command->add_option("--boundary", v.boundary,
+                        "geodesic, or free: u = 0 there, the boundary takes what the cone leaves");
     command->add_option("--cone-curvature", v.cone_curvature, "Of the cone, like -4pi; default 2 pi chi");
     command->add_option("--delaunay", v.delaunay, "isometric (default), or none");
-    command->add_option("--tolerance", v.tolerance, "On max |K - target|, radians; default 1e-10")->check(CLI::PositiveNumber);
-    command->add_option("--max-iterations", v.max_iterations, "Newton steps; 0: 200")->check(CLI::NonNegativeNumber);
-    command->add_flag("--densify", v.densify, "Refine around each cone and raise its valence (circle packings)");
+    command->add_option("--tolerance", v.tolerance, "On max |K - target|, radians; default 1e-10")
+        ->check(CLI::PositiveNumber);
+    command->add_option("--max-iterations", v.max_iterations, "Newton steps; 0: 200")
+        ->check(CLI::NonNegativeNumber);
+    command->add_flag("--densify", v.densify,
+                      "Refine around each cone and raise its valence (circle packings)");
     command->add_option("--repair", v.repair, "Changes to make: orient,weld,drop-degenerate");
     command->add_flag("--resume", v.resume, "Continue what an interrupted run finished");
     command->add_flag("--dry-run", a->dry_run, "Only say what would run, with time and memory");
-    command->add_option("--shard", v.shard, "i/N: only every N-th of the chosen vertices, from the i-th (i = 0 … N-1)");
+    command->add_option("--shard", v.shard,
+                        "i/N: only every N-th of the chosen vertices, from the i-th (i = 0 … N-1)");
     command->add_option("--timeout", v.timeout, "Seconds per solve; 0: none")->check(CLI::NonNegativeNumber);
     command->add_option("--max-memory", v.max_memory, "Bound on the predicted memory, like 8G");
     add_common(*command, common);
-    command->footer("Example: ricci sweep eight.off --vertices sample:200 --resolutions 5000,input -o eight.h5");
+    command->footer(
+        "Example: ricci sweep eight.off --vertices sample:200 --resolutions 5000,input -o eight.h5");
     command->callback([&common, &action, a, command] {
         action = [&common, a, command] {
             SweepConfig config = merged(*command, *a);

@@ -14,7 +14,8 @@ namespace {
 int verify(const std::string& path, bool recompute, const CommonOptions& common) {
     const std::vector<std::string> complaints = verify_structure(path);
     std::vector<RecomputedSolution> solutions;
-    if (complaints.empty() && recompute) solutions = recompute_solutions(read_run(path), common.resolved_threads());
+    if (complaints.empty() && recompute)
+        solutions = recompute_solutions(read_run(path), common.resolved_threads());
     bool sound = complaints.empty();
     for (const std::string& complaint : complaints) spdlog::error("{}: {}", path, complaint);
     for (const RecomputedSolution& s : solutions) {
@@ -24,34 +25,42 @@ int verify(const std::string& path, bool recompute, const CommonOptions& common)
     if (common.json) {
         nlohmann::json list = nlohmann::json::array();
         for (const RecomputedSolution& s : solutions)
-            list.push_back({{"item", s.item}, {"what", s.what}, {"residual_stored", finite_or_null(s.residual_stored)},
+            list.push_back({{"item", s.item},
+                            {"what", s.what},
+                            {"residual_stored", finite_or_null(s.residual_stored)},
                             {"residual_recomputed", finite_or_null(s.residual_recomputed)},
                             {"area_distortion_stored", finite_or_null(s.distortion_stored)},
                             {"area_distortion_recomputed", finite_or_null(s.distortion_recomputed)},
-                            {"flips", s.flips}, {"sound", s.sound}, {"message", s.message}});
+                            {"flips", s.flips},
+                            {"sound", s.sound},
+                            {"message", s.message}});
         print_json({{"file", path}, {"sound", sound}, {"complaints", complaints}, {"recomputed", list}});
         return sound ? kDone : kSomeFailed;
     }
     if (!solutions.empty())
-        fmt::print("{:<40}  {:<22}  {:>10}  {:>10}  {:>16}  {:>16}\n", "item", "solution", "stored", "recomputed", "distortion",
-                   "recomputed");
+        fmt::print("{:<40}  {:<22}  {:>10}  {:>10}  {:>16}  {:>16}\n", "item", "solution", "stored",
+                   "recomputed", "distortion", "recomputed");
     for (const RecomputedSolution& s : solutions)
-        fmt::print("{:<40}  {:<22}  {:>10.2e}  {:>10.2e}  {:>16.10g}  {:>16.10g}  {}\n", s.item, s.what, s.residual_stored,
-                   s.residual_recomputed, s.distortion_stored, s.distortion_recomputed, s.sound ? "" : s.message);
-    fmt::print("{}: {}{}\n", path, sound ? "sound" : "NOT sound",
-               recompute && complaints.empty() ? fmt::format(", {} solutions recomputed", solutions.size()) : "");
+        fmt::print("{:<40}  {:<22}  {:>10.2e}  {:>10.2e}  {:>16.10g}  {:>16.10g}  {}\n", s.item, s.what,
+                   s.residual_stored, s.residual_recomputed, s.distortion_stored, s.distortion_recomputed,
+                   s.sound ? "" : s.message);
+    fmt::print(
+        "{}: {}{}\n", path, sound ? "sound" : "NOT sound",
+        recompute && complaints.empty() ? fmt::format(", {} solutions recomputed", solutions.size()) : "");
     return sound ? kDone : kSomeFailed;
 }
 
 }  // namespace
 
 void add_verify(CLI::App& app, CommonOptions& common, Action& action) {
-    auto* command = app.add_subcommand("verify", "Check a result file; --recompute rebuilds every stored solution");
+    auto* command =
+        app.add_subcommand("verify", "Check a result file; --recompute rebuilds every stored solution");
     auto path = std::make_shared<std::string>();
     auto recompute = std::make_shared<bool>(false);
     command->add_option("FILE", *path, "Result file (HDF5)")->required();
-    command->add_flag("--recompute", *recompute,
-                      "Rebuild every stored metric from mesh/ and its conformal factor by separate code in long double");
+    command->add_flag(
+        "--recompute", *recompute,
+        "Rebuild every stored metric from mesh/ and its conformal factor by separate code in long double");
     add_common(*command, common);
     command->footer("Example: ricci verify eight.h5 --recompute");
     command->callback([&common, &action, path, recompute] {

@@ -27,7 +27,9 @@ extern "C" void on_signal(int number) {
     signal_seen = number;
 }
 
-bool stderr_is_terminal() { return isatty(STDERR_FILENO) == 1; }
+bool stderr_is_terminal() {
+    return isatty(STDERR_FILENO) == 1;
+}
 
 std::string duration(double seconds) {
     const auto s = static_cast<std::int64_t>(seconds + 0.5);
@@ -38,10 +40,13 @@ std::string duration(double seconds) {
 std::string progress_text(const SchedulerProgress& p) {
     const double rate = p.seconds > 0.0 ? static_cast<double>(p.solves_done) / p.seconds : 0.0;
     // Sources not opened yet are taken to hold as much as those that are.
-    const double per_source = p.sources_opened > 0 ? static_cast<double>(p.solves_known) / static_cast<double>(p.sources_opened) : 0.0;
+    const double per_source =
+        p.sources_opened > 0 ? static_cast<double>(p.solves_known) / static_cast<double>(p.sources_opened)
+                             : 0.0;
     const double left = static_cast<double>(p.solves_known - p.solves_done) +
                         per_source * static_cast<double>(p.sources - p.sources_opened);
-    std::string text = fmt::format("mesh {}/{}  solves {}/{}", p.sources_opened, p.sources, p.solves_done, p.solves_known);
+    std::string text =
+        fmt::format("mesh {}/{}  solves {}/{}", p.sources_opened, p.sources, p.solves_done, p.solves_known);
     if (rate > 0.0) text += fmt::format("  {:.1f}/s  ETA {}", rate, duration(left / rate));
     return text;
 }
@@ -50,7 +55,8 @@ bool is_mesh_name(const std::filesystem::path& path) {
     std::string name = path.filename().string();
     std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
     if (name.ends_with(".gz")) name.resize(name.size() - 3);
-    return std::any_of(std::begin({".obj", ".off", ".ply", ".stl", ".len"}), std::end({".obj", ".off", ".ply", ".stl", ".len"}),
+    return std::any_of(std::begin({".obj", ".off", ".ply", ".stl", ".len"}),
+                       std::end({".obj", ".off", ".ply", ".stl", ".len"}),
                        [&](const char* suffix) { return name.ends_with(suffix); });
 }
 
@@ -65,7 +71,9 @@ double parse_number(const std::string& text, const std::string& whole) {
 
 }  // namespace
 
-int CommonOptions::resolved_threads() const { return threads > 0 ? threads : hardware_threads(); }
+int CommonOptions::resolved_threads() const {
+    return threads > 0 ? threads : hardware_threads();
+}
 
 void set_up_log(const CommonOptions& options) {
     const bool colour = stderr_is_terminal() && std::getenv("NO_COLOR") == nullptr;
@@ -73,7 +81,8 @@ void set_up_log(const CommonOptions& options) {
                                                                              : spdlog::color_mode::never);
     auto logger = std::make_shared<spdlog::logger>("ricci", sink);
     logger->set_pattern("%^%l%$: %v");
-    logger->set_level(options.quiet ? spdlog::level::err : (options.verbose ? spdlog::level::debug : spdlog::level::info));
+    logger->set_level(options.quiet ? spdlog::level::err
+                                    : (options.verbose ? spdlog::level::debug : spdlog::level::info));
     spdlog::set_default_logger(logger);
 }
 
@@ -83,7 +92,9 @@ void print_json(const nlohmann::json& object) {
     std::fflush(stdout);
 }
 
-nlohmann::json finite_or_null(double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); }
+nlohmann::json finite_or_null(double value) {
+    return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+}
 
 void catch_signals() {
     struct sigaction action {};
@@ -94,12 +105,16 @@ void catch_signals() {
     signal(SIGXFSZ, SIG_IGN);
 }
 
-int caught_signal() { return signal_seen; }
+int caught_signal() {
+    return signal_seen;
+}
 
 ProgressLine::ProgressLine(bool quiet)
     : terminal_(stderr_is_terminal()), quiet_(quiet), last_(std::chrono::steady_clock::now()) {}
 
-ProgressLine::~ProgressLine() { clear(); }
+ProgressLine::~ProgressLine() {
+    clear();
+}
 
 void ProgressLine::show(const SchedulerProgress& progress) {
     if (quiet_) return;
@@ -115,8 +130,8 @@ void ProgressLine::show(const SchedulerProgress& progress) {
                                                          static_cast<double>(progress.solves_known)
                                                    : 0.0;
     const auto filled = static_cast<std::size_t>(share * 24.0);
-    std::fprintf(stderr, "\r\x1b[K[%s%s] %s", std::string(filled, '#').c_str(), std::string(24 - filled, '.').c_str(),
-                 progress_text(progress).c_str());
+    std::fprintf(stderr, "\r\x1b[K[%s%s] %s", std::string(filled, '#').c_str(),
+                 std::string(24 - filled, '.').c_str(), progress_text(progress).c_str());
     std::fflush(stderr);
     drawn_ = true;
 }
@@ -135,14 +150,16 @@ std::vector<std::string> expand_inputs(const std::vector<std::string>& arguments
         if (fs::is_directory(argument)) {
             std::vector<std::string> found;
             for (const auto& entry : fs::recursive_directory_iterator(argument))
-                if (entry.is_regular_file() && is_mesh_name(entry.path())) found.push_back(entry.path().string());
+                if (entry.is_regular_file() && is_mesh_name(entry.path()))
+                    found.push_back(entry.path().string());
             if (found.empty()) throw UsageError(fmt::format("the folder '{}' holds no mesh file", argument));
             std::sort(found.begin(), found.end());
             files.insert(files.end(), found.begin(), found.end());
         } else if (!fs::exists(argument) && argument.find_first_of("*?[") != std::string::npos) {
             glob_t matches{};
             const int status = glob(argument.c_str(), 0, nullptr, &matches);
-            for (std::size_t k = 0; status == 0 && k < matches.gl_pathc; ++k) files.emplace_back(matches.gl_pathv[k]);
+            for (std::size_t k = 0; status == 0 && k < matches.gl_pathc; ++k)
+                files.emplace_back(matches.gl_pathv[k]);
             globfree(&matches);
             if (status != 0) throw UsageError(fmt::format("no file matches '{}'", argument));
         } else {
@@ -165,7 +182,8 @@ double parse_curvature(const std::string& text) {
     if (factor == "-") factor = "-1";
     double value = parse_number(factor, text) * std::numbers::pi;
     if (!rest.empty()) {
-        if (rest[0] != '/') throw UsageError(fmt::format("'{}' is not a number, nor [number][*]pi[/number]", text));
+        if (rest[0] != '/')
+            throw UsageError(fmt::format("'{}' is not a number, nor [number][*]pi[/number]", text));
         value /= parse_number(rest.substr(1), text);
     }
     if (!std::isfinite(value)) throw UsageError(fmt::format("'{}' is not finite", text));
@@ -178,7 +196,8 @@ std::int64_t parse_bytes(const std::string& text) {
     if (!number.empty() && (number.back() == 'B' || number.back() == 'b')) number.pop_back();
     double factor = 1.0;
     if (!number.empty()) {
-        const auto unit = units.find(static_cast<char>(std::toupper(static_cast<unsigned char>(number.back()))));
+        const auto unit =
+            units.find(static_cast<char>(std::toupper(static_cast<unsigned char>(number.back()))));
         if (unit != std::string::npos) {
             factor = std::pow(1024.0, static_cast<double>(unit) + 1.0);
             number.pop_back();

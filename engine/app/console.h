@@ -3,11 +3,10 @@
 
 #include <chrono>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 #include "engine/sweep/scheduler.h"
 
@@ -52,8 +51,8 @@ class ProgressLine {
     std::chrono::steady_clock::time_point last_;
 };
 
-/// Files, folders (searched for mesh files, sorted) and globs, in the order given. Throws UsageError for a glob without
-/// a match; a file that does not exist stays in the list and fails when it is read.
+/// Files, folders (searched for mesh files, sorted) and globs, in the order given. Throws UsageError for a
+/// glob without a match; a file that does not exist stays in the list and fails when it is read.
 std::vector<std::string> expand_inputs(const std::vector<std::string>& arguments);
 
 /// "-4pi", "pi/2", "0.5*pi", "-6.28". Throws UsageError.

@@ -1,3 +1,5 @@
 #include "engine/app/app.h"
 
-int main(int argc, char** argv) { return ricci::app::run(argc, argv); }
+int main(int argc, char** argv) {
+    return ricci::app::run(argc, argv);
+}

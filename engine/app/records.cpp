@@ -25,10 +25,12 @@ RunInfo make_run_info(const std::string& config, const std::string& fingerprint,
     return info;
 }
 
-std::string item_name(const std::string& stem, Index faces) { return fmt::format("{}@{}", stem, faces); }
+std::string item_name(const std::string& stem, Index faces) {
+    return fmt::format("{}@{}", stem, faces);
+}
 
-ItemRecord make_item(const std::string& name, const std::string& source, std::uint64_t hash, const SurfaceMesh& mesh,
-                     const std::vector<Index>& source_vertex) {
+ItemRecord make_item(const std::string& name, const std::string& source, std::uint64_t hash,
+                     const SurfaceMesh& mesh, const std::vector<Index>& source_vertex) {
     const Topology topology = topology_of(mesh.connectivity);
     ItemRecord item;
     item.name = name;
@@ -55,7 +57,8 @@ SurfaceMesh surface_of(const ItemRecord& item) {
     SurfaceMesh mesh;
     std::vector<Index> tail;
     for (const Triangle& t : item.triangles) tail.insert(tail.end(), t.begin(), t.end());
-    mesh.connectivity = connectivity_from_gluing(std::move(tail), item.twin, static_cast<Index>(item.source_vertex.size()));
+    mesh.connectivity =
+        connectivity_from_gluing(std::move(tail), item.twin, static_cast<Index>(item.source_vertex.size()));
     mesh.edge_length = item.edge_length;
     mesh.input_vertex = item.source_vertex;
     return mesh;
@@ -99,7 +102,8 @@ SweepRow make_row(const SweepSolve& solve) {
     row.newton_iterations = static_cast<std::uint16_t>(
         std::min<std::int32_t>(solve.newton_iterations, std::numeric_limits<std::uint16_t>::max()));
     row.residual_max = solve.residual_max;
-    row.flips = static_cast<std::int32_t>(std::min<std::int64_t>(solve.flips, std::numeric_limits<std::int32_t>::max()));
+    row.flips = static_cast<std::int32_t>(
+        std::min<std::int64_t>(solve.flips, std::numeric_limits<std::int32_t>::max()));
     row.seconds = static_cast<float>(solve.seconds);
     return row;
 }

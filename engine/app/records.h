@@ -16,9 +16,10 @@ RunInfo make_run_info(const std::string& config, const std::string& fingerprint,
 /// <stem>@<faces>.
 std::string item_name(const std::string& stem, Index faces);
 
-/// `source`: the file as given; `hash`: its content hash; `source_vertex`: empty for the mesh's own input numbers.
-ItemRecord make_item(const std::string& name, const std::string& source, std::uint64_t hash, const SurfaceMesh& mesh,
-                     const std::vector<Index>& source_vertex = {});
+/// `source`: the file as given; `hash`: its content hash; `source_vertex`: empty for the mesh's own input
+/// numbers.
+ItemRecord make_item(const std::string& name, const std::string& source, std::uint64_t hash,
+                     const SurfaceMesh& mesh, const std::vector<Index>& source_vertex = {});
 
 /// The surface of a stored item.
 SurfaceMesh surface_of(const ItemRecord& item);

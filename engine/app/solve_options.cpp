@@ -65,7 +65,8 @@ Boundary parse_boundary(const std::string& text) {
 
 std::optional<Geometry> parse_geometry(const std::string& text) {
     if (text == "auto") return std::nullopt;
-    return parse_name("geometry", text, std::array{Geometry::euclidean, Geometry::hyperbolic, Geometry::spherical});
+    return parse_name("geometry", text,
+                      std::array{Geometry::euclidean, Geometry::hyperbolic, Geometry::spherical});
 }
 
 bool parse_delaunay(const std::string& text) {
@@ -77,7 +78,8 @@ bool parse_delaunay(const std::string& text) {
 Cone parse_cone(const std::string& text) {
     const auto colon = text.find(':');
     Index vertex = -1;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + std::min(colon, text.size()), vertex);
+    const auto [end, error] =
+        std::from_chars(text.data(), text.data() + std::min(colon, text.size()), vertex);
     if (colon == std::string::npos || error != std::errc() || end != text.data() + colon || vertex < 0)
         throw UsageError(fmt::format("cone '{}' is not VERTEX:CURVATURE (like 0:-4pi)", text));
     return {vertex, parse_curvature(text.substr(colon + 1))};

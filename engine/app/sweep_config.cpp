@@ -1,12 +1,12 @@
 #include "engine/app/sweep_config.h"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <sstream>
-#include <toml++/toml.h>
 
 #include "engine/app/console.h"
 #include "engine/app/solve_options.h"
@@ -22,7 +22,8 @@ namespace {
 /// Reads the keys of one table; whatever is not asked for is an error.
 class TableReader {
   public:
-    TableReader(const std::string& path, const toml::table& root, const std::string& name) : path_(&path), name_(name) {
+    TableReader(const std::string& path, const toml::table& root, const std::string& name)
+        : path_(&path), name_(name) {
         if (const toml::node* node = root.get(name)) {
             table_ = node->as_table();
             if (table_ == nullptr) complain(path, *node, fmt::format("'{}' must be a table", name));
@@ -52,7 +53,8 @@ class TableReader {
         if (table_ == nullptr) return;
         for (const auto& [key, node] : *table_)
             if (std::find(known_.begin(), known_.end(), key.str()) == known_.end())
-                complain(*path_, node, fmt::format("unknown key '{}' in [{}]", std::string(key.str()), name_));
+                complain(*path_, node,
+                         fmt::format("unknown key '{}' in [{}]", std::string(key.str()), name_));
     }
 
   private:
@@ -103,7 +105,9 @@ SweepConfig read_sweep_config(const std::string& path) {
     }
     for (const auto& [key, node] : root)
         if (key.str() != "input" && key.str() != "solve" && key.str() != "sweep" && key.str() != "run")
-            complain(path, node, fmt::format("unknown table or key '{}' (known: input, solve, sweep, run)", std::string(key.str())));
+            complain(path, node,
+                     fmt::format("unknown table or key '{}' (known: input, solve, sweep, run)",
+                                 std::string(key.str())));
     SweepConfig c;
     TableReader input(path, root, "input");
     input.list("meshes", c.meshes);
@@ -137,15 +141,16 @@ std::string to_toml(const SweepConfig& c, bool only_what_decides_results) {
     toml::array meshes, resolutions;
     for (const std::string& m : c.meshes) meshes.push_back(m);
     for (const std::string& r : c.resolutions) resolutions.push_back(r);
-    toml::table root{{"input", toml::table{{"meshes", meshes}, {"repair", c.repair}}},
-                     {"solve", toml::table{{"scheme", c.scheme},
-                                           {"boundary", c.boundary},
-                                           {"cone_curvature", c.cone_curvature},
-                                           {"delaunay", c.delaunay},
-                                           {"tolerance", c.tolerance},
-                                           {"max_iterations", c.max_iterations},
-                                           {"densify", c.densify}}},
-                     {"sweep", toml::table{{"vertices", c.vertices}, {"resolutions", resolutions}, {"keep", c.keep}}}};
+    toml::table root{
+        {"input", toml::table{{"meshes", meshes}, {"repair", c.repair}}},
+        {"solve", toml::table{{"scheme", c.scheme},
+                              {"boundary", c.boundary},
+                              {"cone_curvature", c.cone_curvature},
+                              {"delaunay", c.delaunay},
+                              {"tolerance", c.tolerance},
+                              {"max_iterations", c.max_iterations},
+                              {"densify", c.densify}}},
+        {"sweep", toml::table{{"vertices", c.vertices}, {"resolutions", resolutions}, {"keep", c.keep}}}};
     // A time-out decides which solves fail, a shard which are done at all.
     toml::table run{{"shard", c.shard}, {"timeout", c.timeout}};
     if (!only_what_decides_results) {
@@ -163,8 +168,7 @@ SweepOptions sweep_options(const SweepConfig& c) {
     SweepOptions options;
     options.scheme = parse_scheme(c.scheme);
     options.boundary = parse_boundary(c.boundary);
-    if (options.boundary == Boundary::curvature)
-        throw UsageError("a sweep's boundary is geodesic or free");
+    if (options.boundary == Boundary::curvature) throw UsageError("a sweep's boundary is geodesic or free");
     if (!c.cone_curvature.empty()) options.cone_curvature = parse_curvature(c.cone_curvature);
     options.delaunay = parse_delaunay(c.delaunay);
     options.densify = c.densify;
@@ -205,17 +209,20 @@ VertexChoice parse_vertices(const std::string& text) {
 
 std::vector<Index> choose_vertices(const VertexChoice& choice, const std::vector<Index>& candidates) {
     switch (choice.kind) {
-        case VertexChoice::Kind::sample: return sample_vertices(candidates, choice.count, choice.seed);
+        case VertexChoice::Kind::sample:
+            return sample_vertices(candidates, choice.count, choice.seed);
         case VertexChoice::Kind::list: {
             std::vector<Index> chosen = choice.list;
             std::sort(chosen.begin(), chosen.end());
             chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
             for (const Index v : chosen)
                 if (!std::binary_search(candidates.begin(), candidates.end(), v))
-                    throw std::invalid_argument(fmt::format("vertex {} of the list is no interior vertex of this surface", v));
+                    throw std::invalid_argument(
+                        fmt::format("vertex {} of the list is no interior vertex of this surface", v));
             return chosen;
         }
-        case VertexChoice::Kind::all: break;
+        case VertexChoice::Kind::all:
+            break;
     }
     return candidates;
 }
@@ -224,7 +231,8 @@ std::vector<Index> parse_resolutions(const std::vector<std::string>& texts) {
     std::vector<Index> result;
     for (const std::string& text : texts) {
         const Index faces = text == "input" ? 0 : whole_number<Index>(text, "resolutions");
-        if (text != "input" && faces < 4) throw UsageError(fmt::format("resolution {} is less than a tetrahedron", text));
+        if (text != "input" && faces < 4)
+            throw UsageError(fmt::format("resolution {} is less than a tetrahedron", text));
         result.push_back(faces);
     }
     if (result.empty()) throw UsageError("resolutions: at least one is needed");

@@ -18,19 +18,19 @@ struct SweepConfig {
     double tolerance = 1e-10;
     std::int32_t max_iterations = 0;
     bool densify = false;
-    std::string vertices = "all";               // all | sample:N[:SEED] | FILE
+    std::string vertices = "all";                      // all | sample:N[:SEED] | FILE
     std::vector<std::string> resolutions = {"input"};  // face counts or "input"
-    std::string keep = "best,worst";            // none | best | worst | best,worst | all | K
+    std::string keep = "best,worst";                   // none | best | worst | best,worst | all | K
     std::string output = "sweep.h5";
-    std::string shard;                          // i/N, i from 0
+    std::string shard;  // i/N, i from 0
     int threads = 0;
     std::string max_memory;
     double timeout = 0.0;
     bool resume = false;
 };
 
-/// Reads a configuration. Throws FileError; UsageError naming file, line and key for anything unknown or of the wrong
-/// type.
+/// Reads a configuration. Throws FileError; UsageError naming file, line and key for anything unknown or of
+/// the wrong type.
 SweepConfig read_sweep_config(const std::string& path);
 
 /// The resolved configuration as TOML: what decides the results, and how it was run.

@@ -27,10 +27,11 @@ struct ItemSummary {
 class SweepRun final : public SweepSink {
   public:
     /// `store` may be null (dry run). Throws UsageError.
-    SweepRun(const SweepConfig& config, std::vector<std::string> files, RunStore* store, ProgressLine& progress);
+    SweepRun(const SweepConfig& config, std::vector<std::string> files, RunStore* store,
+             ProgressLine& progress);
 
-    /// Opens the i-th file: one task per component and resolution. Records what is wrong with it instead of throwing;
-    /// FileError of the store comes through.
+    /// Opens the i-th file: one task per component and resolution. Records what is wrong with it instead of
+    /// throwing; FileError of the store comes through.
     std::vector<SweepTask> open(std::size_t file);
 
     void block_finished(std::size_t item, std::vector<SweepSolve> solves) override;
@@ -54,11 +55,12 @@ class SweepRun final : public SweepSink {
         double seconds = 0.0;
     };
 
-    std::optional<SweepTask> open_surface(const std::string& file, const std::string& stem, std::uint64_t hash,
-                                          const SurfaceMesh& mesh, Index resolution);
+    std::optional<SweepTask> open_surface(const std::string& file, const std::string& stem,
+                                          std::uint64_t hash, const SurfaceMesh& mesh, Index resolution);
     std::size_t add_item(Item item);
     std::string unique_name(const std::string& name);
-    void record_failure(std::size_t item, const std::string& stage, Status status, const std::string& message);
+    void record_failure(std::size_t item, const std::string& stage, Status status,
+                        const std::string& message);
     [[nodiscard]] std::vector<Index> to_solve(const std::string& item, std::vector<Index> chosen) const;
 
     SweepConfig config_;

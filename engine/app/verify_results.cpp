@@ -1,11 +1,11 @@
 #include "engine/app/verify_results.h"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <toml++/toml.h>
 
 #include "engine/app/console.h"
 #include "engine/app/records.h"
@@ -18,8 +18,8 @@
 namespace ricci::app {
 namespace {
 
-/// What the recomputation may differ by: the stored residual is evaluated in double, where angles at factors of
-/// e^48 carry some 1e-12; a solution at the tolerance 1e-10 stays well below.
+/// What the recomputation may differ by: the stored residual is evaluated in double, where angles at factors
+/// of e^48 carry some 1e-12; a solution at the tolerance 1e-10 stays well below.
 constexpr double kResidualSlack = 1e-9;
 constexpr double kDistortionSlack = 1e-9;  // relative
 
@@ -54,8 +54,10 @@ Recomputed recompute(const SurfaceMesh& mesh, std::span<const double> u, Scheme 
 }
 
 /// max |K - target| over vertices that are prescribed: all used ones, but not a free boundary.
-double residual(const SurfaceMesh& mesh, const Recomputed& r, std::span<const double> target, Boundary boundary) {
-    const std::vector<std::uint8_t> on_boundary = boundary_vertices(mesh.connectivity), used = used_vertices(mesh.connectivity);
+double residual(const SurfaceMesh& mesh, const Recomputed& r, std::span<const double> target,
+                Boundary boundary) {
+    const std::vector<std::uint8_t> on_boundary = boundary_vertices(mesh.connectivity),
+                                    used = used_vertices(mesh.connectivity);
     double largest = 0.0;
     for (std::size_t v = 0; v < used.size(); ++v) {
         if (!used[v] || (on_boundary[v] && boundary == Boundary::free)) continue;
@@ -67,12 +69,16 @@ double residual(const SurfaceMesh& mesh, const Recomputed& r, std::span<const do
 void judge(const Recomputed& r, RecomputedSolution& s) {
     s.flips = r.isometric_flips + r.ptolemy_flips;
     s.distortion_recomputed = r.area_distortion;
-    if (!r.valid) s.message = "a face of the rebuilt metric is no triangle";
+    if (!r.valid)
+        s.message = "a face of the rebuilt metric is no triangle";
     else if (!(std::abs(s.residual_recomputed - s.residual_stored) <= kResidualSlack))
-        s.message = fmt::format("residual is {:.3g}, stored {:.3g}", s.residual_recomputed, s.residual_stored);
+        s.message =
+            fmt::format("residual is {:.3g}, stored {:.3g}", s.residual_recomputed, s.residual_stored);
     else if (std::isfinite(s.distortion_stored) &&
-             !(std::abs(s.distortion_recomputed - s.distortion_stored) <= kDistortionSlack * (1.0 + s.distortion_stored)))
-        s.message = fmt::format("area distortion is {:.12g}, stored {:.12g}", s.distortion_recomputed, s.distortion_stored);
+             !(std::abs(s.distortion_recomputed - s.distortion_stored) <=
+               kDistortionSlack * (1.0 + s.distortion_stored)))
+        s.message = fmt::format("area distortion is {:.12g}, stored {:.12g}", s.distortion_recomputed,
+                                s.distortion_stored);
     s.sound = s.message.empty();
 }
 
@@ -80,7 +86,8 @@ RecomputedSolution check_kept(const StoredItem& item, const KeptFactor& kept, co
     RecomputedSolution s;
     const StoredSweep& sweep = *item.sweep;
     s.item = item.item.name;
-    s.what = fmt::format("{} (vertex {})", kept.vertex == sweep.best ? "best" : (kept.vertex == sweep.worst ? "worst" : "kept"),
+    s.what = fmt::format("{} (vertex {})",
+                         kept.vertex == sweep.best ? "best" : (kept.vertex == sweep.worst ? "worst" : "kept"),
                          kept.vertex);
     s.distortion_stored = kept.area_distortion;
     for (const SweepRow& row : sweep.rows)
@@ -116,7 +123,8 @@ RecomputedSolution check_flow(const StoredItem& item, bool delaunay) {
     for (std::size_t v = 0; v < prescribed.size(); ++v)
         if (boundary == Boundary::free && on_boundary[v]) prescribed[v] = 0.0;
     const double scale = std::exp(initial_log_scale(mesh, prescribed, geometry));
-    const Recomputed r = recompute(mesh, flow.conformal_factor, parse_scheme(flow.scheme), geometry, boundary, delaunay, scale);
+    const Recomputed r = recompute(mesh, flow.conformal_factor, parse_scheme(flow.scheme), geometry, boundary,
+                                   delaunay, scale);
     s.residual_recomputed = residual(mesh, r, flow.target_curvature, boundary);
     judge(r, s);
     return s;
@@ -135,10 +143,11 @@ std::vector<RecomputedSolution> recompute_solutions(const StoredRun& run, int th
     }
     std::vector<RecomputedSolution> results(jobs.size());
     with_thread_limit(threads, [&] {
-        for_blocks(static_cast<std::int64_t>(jobs.size()), 1, threads > 1, [&](std::int64_t begin, std::int64_t) {
-            const auto k = static_cast<std::size_t>(begin);
-            results[k] = jobs[k]();
-        });
+        for_blocks(static_cast<std::int64_t>(jobs.size()), 1, threads > 1,
+                   [&](std::int64_t begin, std::int64_t) {
+                       const auto k = static_cast<std::size_t>(begin);
+                       results[k] = jobs[k]();
+                   });
     });
     return results;
 }

@@ -18,8 +18,9 @@ struct RecomputedSolution {
     std::string message;  // why not
 };
 
-/// Rebuilds every stored sweep solution and flow (vertex scaling: from scratch by engine/verify; circle packings: from
-/// the initial packing and u) and compares. Solutions run in parallel; the result is in file order.
+/// Rebuilds every stored sweep solution and flow (vertex scaling: from scratch by engine/verify; circle
+/// packings: from the initial packing and u) and compares. Solutions run in parallel; the result is in file
+/// order.
 std::vector<RecomputedSolution> recompute_solutions(const StoredRun& run, int threads);
 
 }  // namespace ricci::app

@@ -18,7 +18,8 @@ using std::numbers::pi;
 Boundary resolve_boundary(const FlowOptions& options) {
     if (options.boundary) return *options.boundary;
     const TargetKind target = options.target.value_or(TargetKind::flat);
-    return target == TargetKind::boundary || target == TargetKind::values ? Boundary::curvature : Boundary::geodesic;
+    return target == TargetKind::boundary || target == TargetKind::values ? Boundary::curvature
+                                                                          : Boundary::geodesic;
 }
 
 SolveOptions solve_options(const FlowOptions& options, Geometry geometry) {
@@ -69,19 +70,26 @@ void store(Metric& metric, const CurvatureTarget& target, FlowResult& result) {
 
 std::string reason(Status status, Geometry geometry, const FlowOptions& options) {
     switch (status) {
-        case Status::converged: return {};
+        case Status::converged:
+            return {};
         case Status::stalled:
             return geometry == Geometry::spherical
-                       ? fmt::format("the spherical energy is not convex and the direct {} method found no further descent",
-                                     name_of(options.method))
+                       ? fmt::format(
+                             "the spherical energy is not convex and the direct {} method found no further "
+                             "descent",
+                             name_of(options.method))
                        : "no step reduces the residual any more: the rounding floor of the evaluation";
-        case Status::max_iterations: return "the number of iterations ran out";
-        case Status::factorization_failed: return "the Hessian could not be factorised, shifted or not";
+        case Status::max_iterations:
+            return "the number of iterations ran out";
+        case Status::factorization_failed:
+            return "the Hessian could not be factorised, shifted or not";
         case Status::inadmissible_metric:
             return fmt::format("the initial {} metric has faces that break the triangle inequality",
                                name_of(options.scheme));
-        case Status::not_finite: return "a curvature is not finite";
-        default: return std::string(name_of(status));
+        case Status::not_finite:
+            return "a curvature is not finite";
+        default:
+            return std::string(name_of(status));
     }
 }
 
@@ -95,7 +103,8 @@ void flow_by_scaling(const SurfaceMesh& mesh, const FlowOptions& options, FlowRe
     if (!fixed) std::fill(u.begin(), u.end(), initial_log_scale(mesh, target.curvature, result.geometry));
     result.target_curvature = target.curvature;
     result.message = inadmissibility(surface, target, result.geometry, result.boundary);
-    std::unique_ptr<Metric> metric = std::make_unique<ScaledMetric<double>>(surface, result.geometry, options.parallel);
+    std::unique_ptr<Metric> metric =
+        std::make_unique<ScaledMetric<double>>(surface, result.geometry, options.parallel);
     if (!result.message.empty()) {
         metric->move_to(u);
         metric->evaluate(false);
@@ -112,7 +121,8 @@ void flow_by_scaling(const SurfaceMesh& mesh, const FlowOptions& options, FlowRe
                        status == Status::not_finite || status == Status::inadmissible_metric;
     if (stuck && precision_helps) {
         // Evaluate lengths and angles in long double, from the last good u.
-        auto extended = std::make_unique<ScaledMetric<long double>>(surface, result.geometry, options.parallel);
+        auto extended =
+            std::make_unique<ScaledMetric<long double>>(surface, result.geometry, options.parallel);
         std::vector<double> v = u;
         const SolveOutcome second = run(*extended, target, options, result.geometry, v);
         if (second.status == Status::converged || second.residual_max < result.outcome.residual_max) {
@@ -174,8 +184,8 @@ void flow_by_packing(const SurfaceMesh& mesh, const FlowOptions& options, FlowRe
         store(metric, target, result);
         return;
     }
-    // Towards an inadmissible target the circles of a violating set shrink for ever. It is asked for on the way, while the
-    // radii still mean something; any set found is a proof.
+    // Towards an inadmissible target the circles of a violating set shrink for ever. It is asked for on the
+    // way, while the radii still mean something; any set found is a proof.
     FlowOptions watched = options;
     std::int64_t asked = 0;
     watched.interrupted = [&]() -> std::optional<Status> {
@@ -183,7 +193,8 @@ void flow_by_packing(const SurfaceMesh& mesh, const FlowOptions& options, FlowRe
             if (const auto status = options.interrupted()) return status;
         const std::int64_t every = options.method == Method::newton ? 1 : 100;
         ++asked;
-        return asked > 4 && asked % every == 0 && violated(u) ? std::optional(Status::inadmissible_target) : std::nullopt;
+        return asked > 4 && asked % every == 0 && violated(u) ? std::optional(Status::inadmissible_target)
+                                                              : std::nullopt;
     };
     result.outcome = run(metric, target, watched, result.geometry, u);
     const Status status = result.outcome.status;
@@ -197,7 +208,9 @@ void flow_by_packing(const SurfaceMesh& mesh, const FlowOptions& options, FlowRe
 
 }  // namespace
 
-std::string_view name_of(Method method) { return method == Method::newton ? "newton" : "gradient"; }
+std::string_view name_of(Method method) {
+    return method == Method::newton ? "newton" : "gradient";
+}
 
 Geometry resolve_geometry(const FlowOptions& options, const Topology& topology) {
     if (options.geometry) return *options.geometry;

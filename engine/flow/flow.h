@@ -12,8 +12,9 @@ namespace ricci {
 enum class Method : std::uint8_t { newton, gradient };
 std::string_view name_of(Method method);
 
-/// flat: 0 everywhere; uniform: 2 pi chi / V (Euclidean, closed) or 0 (other geometries: the constant curvature is the
-/// background's); boundary: interior 0, 2 pi chi / B on each of B boundary vertices; values: given.
+/// flat: 0 everywhere; uniform: 2 pi chi / V (Euclidean, closed) or 0 (other geometries: the constant
+/// curvature is the background's); boundary: interior 0, 2 pi chi / B on each of B boundary vertices; values:
+/// given.
 enum class TargetKind : std::uint8_t { flat, uniform, boundary, values };
 
 /// A prescribed cone: curvature of one vertex, replacing the target's.
@@ -23,14 +24,15 @@ struct Cone {
 };
 
 struct FlowOptions {
-    std::optional<Geometry> geometry;  // unset: auto (hyperbolic chi < 0, Euclidean chi = 0, spherical closed genus 0
-                                       // and disks; Euclidean whenever a target or cone is given)
+    std::optional<Geometry> geometry;  // unset: auto (hyperbolic chi < 0, Euclidean chi = 0, spherical closed
+                                       // genus 0 and disks; Euclidean whenever a target or cone is given)
     Scheme scheme = Scheme::vertex_scaling;
     Method method = Method::newton;
     std::optional<TargetKind> target;
     std::vector<double> target_values;  // V, for TargetKind::values
     std::vector<Cone> cones;
-    std::optional<Boundary> boundary;  // unset: curvature when the target speaks of the boundary, else geodesic
+    std::optional<Boundary>
+        boundary;  // unset: curvature when the target speaks of the boundary, else geodesic
     bool delaunay = true;
     double tolerance = 1e-10;
     std::int32_t max_iterations = 0;  // 0: 200 (Newton), 100000 (gradient)
@@ -43,7 +45,7 @@ struct FlowResult {
     Geometry geometry = Geometry::euclidean;
     Boundary boundary = Boundary::geodesic;
     SolveOutcome outcome;
-    std::string message;         // why, where the status is not converged; notes otherwise
+    std::string message;              // why, where the status is not converged; notes otherwise
     bool extended_precision = false;  // double stalled and lengths were evaluated in long double
     double gauss_bonnet_error = 0.0;  // |sum K + kappa A - 2 pi chi|
     double area = 0.0;
@@ -52,14 +54,14 @@ struct FlowResult {
     std::vector<double> curvature;         // V
     std::optional<CirclePacking> packing;  // circle packings: how far the initial metric was off
     bool doubled = false;
-    Connectivity triangulation;            // final one (of the double where doubled)
-    std::vector<double> edge_length;       // 3F' in the background geometry
+    Connectivity triangulation;       // final one (of the double where doubled)
+    std::vector<double> edge_length;  // 3F' in the background geometry
 };
 
 Geometry resolve_geometry(const FlowOptions& options, const Topology& topology);
 
-/// Solves. Throws std::invalid_argument for options that do not fit the surface (cone at a vertex that does not exist,
-/// target of the wrong length, …); every numerical outcome is a status.
+/// Solves. Throws std::invalid_argument for options that do not fit the surface (cone at a vertex that does
+/// not exist, target of the wrong length, …); every numerical outcome is a status.
 FlowResult solve_flow(const SurfaceMesh& mesh, const FlowOptions& options);
 
 }  // namespace ricci

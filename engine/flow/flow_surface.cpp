@@ -5,15 +5,20 @@
 namespace ricci {
 namespace {
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+std::size_t at(Index i) {
+    return static_cast<std::size_t>(i);
+}
 
 }  // namespace
 
 std::string_view name_of(Boundary boundary) {
     switch (boundary) {
-        case Boundary::free: return "free";
-        case Boundary::curvature: return "curvature";
-        case Boundary::geodesic: break;
+        case Boundary::free:
+            return "free";
+        case Boundary::curvature:
+            return "curvature";
+        case Boundary::geodesic:
+            break;
     }
     return "geodesic";
 }
@@ -84,7 +89,8 @@ FlowSurface make_flow_surface(const SurfaceMesh& mesh, bool doubled, bool delaun
     }
     if (delaunay) {
         DelaunayWorkspace workspace;
-        surface.isometric_flips = make_delaunay(surface.triangulation, {}, FlipRule::isometric, workspace).flips;
+        surface.isometric_flips =
+            make_delaunay(surface.triangulation, {}, FlipRule::isometric, workspace).flips;
     }
     return surface;
 }

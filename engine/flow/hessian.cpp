@@ -6,7 +6,9 @@
 namespace ricci {
 namespace {
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+std::size_t at(Index i) {
+    return static_cast<std::size_t>(i);
+}
 
 }  // namespace
 
@@ -35,7 +37,8 @@ void HessianAssembler::build(const Connectivity& c, std::span<const Index> unkno
     diagonal_position_.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
         std::sort(rows.begin() + begin[i], rows.begin() + begin[i + 1]);
-        diagonal_position_[i] = static_cast<Index>(pattern_.row.size());  // the lowest row of the lower triangle
+        diagonal_position_[i] =
+            static_cast<Index>(pattern_.row.size());  // the lowest row of the lower triangle
         for (Index p = begin[i]; p < begin[i + 1]; ++p)
             if (p == begin[i] || rows[at(p)] != rows[at(p) - 1]) pattern_.row.push_back(rows[at(p)]);
         pattern_.column_begin.push_back(static_cast<Index>(pattern_.row.size()));
@@ -112,8 +115,8 @@ bool HessianAssembler::follow_flips(const Connectivity& c, std::span<const Index
     return true;
 }
 
-std::vector<std::pair<Index, Index>> likely_flips(const Connectivity& c, std::span<const Index> seeds, int near,
-                                                  int far) {
+std::vector<std::pair<Index, Index>> likely_flips(const Connectivity& c, std::span<const Index> seeds,
+                                                  int near, int far) {
     std::vector<std::pair<Index, Index>> pairs;
     std::vector<std::uint8_t> inside(at(c.vertex_count), 0), face_inside(at(c.face_count()), 0);
     for (const Index seed : seeds) inside[at(seed)] = 1;
@@ -126,7 +129,8 @@ std::vector<std::pair<Index, Index>> likely_flips(const Connectivity& c, std::sp
         const std::size_t known = faces.size();
         for (Index f = 0; f < c.face_count(); ++f) {
             const auto h = at(3 * f);
-            if (face_inside[at(f)] || !(inside[at(c.tail[h])] || inside[at(c.tail[h + 1])] || inside[at(c.tail[h + 2])]))
+            if (face_inside[at(f)] ||
+                !(inside[at(c.tail[h])] || inside[at(c.tail[h + 1])] || inside[at(c.tail[h + 2])]))
                 continue;
             face_inside[at(f)] = 1;
             faces.push_back(f);
@@ -143,8 +147,9 @@ std::vector<std::pair<Index, Index>> likely_flips(const Connectivity& c, std::sp
     return pairs;
 }
 
-void HessianAssembler::assemble(const Connectivity& c, std::span<const double> off, std::span<const double> diagonal,
-                                Index pinned, std::vector<double>& values) const {
+void HessianAssembler::assemble(const Connectivity& c, std::span<const double> off,
+                                std::span<const double> diagonal, Index pinned,
+                                std::vector<double>& values) const {
     values.assign(pattern_.row.size(), 0.0);
     for (std::size_t h = 0; h < off.size(); ++h) {
         const Index i = unknown_[at(c.tail[h])];

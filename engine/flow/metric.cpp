@@ -7,7 +7,9 @@
 namespace ricci {
 namespace {
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+std::size_t at(Index i) {
+    return static_cast<std::size_t>(i);
+}
 
 /// Sums in fixed order; faces are too few for the order to cost anything.
 template <class Real>
@@ -27,7 +29,10 @@ IntrinsicTriangulation<Real> start_of(const FlowSurface& surface) {
 }  // namespace
 
 Metric::Metric(const FlowSurface& surface, Geometry geometry, bool parallel)
-    : surface_(&surface), geometry_(geometry), parallel_(parallel), u_(surface.orbit.size(), 0.0),
+    : surface_(&surface),
+      geometry_(geometry),
+      parallel_(parallel),
+      u_(surface.orbit.size(), 0.0),
       curvature_(at(surface.vertex_count()), 0.0) {
     const std::size_t halfedges = surface.triangulation.log_chord.size();
     off_.resize(halfedges);
@@ -36,11 +41,12 @@ Metric::Metric(const FlowSurface& surface, Geometry geometry, bool parallel)
 
 template <class Real>
 bool Metric::fold_curvature(std::span<const Real> total) {
-    // In Real until the end: 2 pi minus an angle sum must not lose what extended precision gained. The constant full
-    // angle is pi or 2 pi exactly; its double value is corrected by the long double one.
+    // In Real until the end: 2 pi minus an angle sum must not lose what extended precision gained. The
+    // constant full angle is pi or 2 pi exactly; its double value is corrected by the long double one.
     std::vector<Real> sum(curvature_.size(), Real(0));
     for (std::size_t s = 0; s < total.size(); ++s) {
-        const Real full = surface_->full_angle[s] > 4.0 ? Real(2) * std::numbers::pi_v<Real> : std::numbers::pi_v<Real>;
+        const Real full =
+            surface_->full_angle[s] > 4.0 ? Real(2) * std::numbers::pi_v<Real> : std::numbers::pi_v<Real>;
         sum[at(surface_->orbit[s])] += full - total[s];
     }
     bool finite = true;
@@ -53,15 +59,19 @@ bool Metric::fold_curvature(std::span<const Real> total) {
 
 template <class Real>
 ScaledMetric<Real>::ScaledMetric(const FlowSurface& surface, Geometry geometry, bool parallel)
-    : Metric(surface, geometry, parallel), triangulation_(start_of<Real>(surface)),
-      angle_(triangulation_.log_chord.size()), total_(surface.orbit.size()), face_area_(angle_.size() / 3) {}
+    : Metric(surface, geometry, parallel),
+      triangulation_(start_of<Real>(surface)),
+      angle_(triangulation_.log_chord.size()),
+      total_(surface.orbit.size()),
+      face_area_(angle_.size() / 3) {}
 
 template <class Real>
 bool ScaledMetric<Real>::move_to(std::span<const double> u) {
     for (std::size_t s = 0; s < u_.size(); ++s) u_[s] = u[at(surface_->orbit[s])];
     const FlipCount count = make_delaunay<Real>(triangulation_, u_, FlipRule::ptolemy, workspace_);
     flips_ += count.flips;
-    touched_faces_.insert(touched_faces_.end(), workspace_.touched_faces.begin(), workspace_.touched_faces.end());
+    touched_faces_.insert(touched_faces_.end(), workspace_.touched_faces.begin(),
+                          workspace_.touched_faces.end());
     return count.finished;
 }
 
@@ -120,13 +130,20 @@ void ScaledMetric<Real>::reset(const IntrinsicTriangulation<Real>& start) {
 template class ScaledMetric<double>;
 template class ScaledMetric<long double>;
 
-PackedMetric::PackedMetric(const FlowSurface& surface, const CirclePacking& packing, Geometry geometry, bool parallel)
-    : Metric(surface, geometry, parallel), eps_(surface.orbit.size()), eta_(packing.eta), angle_(packing.eta.size()),
-      total_(surface.orbit.size()), face_area_(packing.eta.size() / 3) {
+PackedMetric::PackedMetric(const FlowSurface& surface, const CirclePacking& packing, Geometry geometry,
+                           bool parallel)
+    : Metric(surface, geometry, parallel),
+      eps_(surface.orbit.size()),
+      eta_(packing.eta),
+      angle_(packing.eta.size()),
+      total_(surface.orbit.size()),
+      face_area_(packing.eta.size() / 3) {
     for (std::size_t s = 0; s < eps_.size(); ++s) eps_[s] = packing.eps[s];
 }
 
-PackedCircles PackedMetric::circles() const { return {connectivity().tail, eta_, eps_, u_}; }
+PackedCircles PackedMetric::circles() const {
+    return {connectivity().tail, eta_, eps_, u_};
+}
 
 bool PackedMetric::move_to(std::span<const double> u) {
     for (std::size_t s = 0; s < u_.size(); ++s) u_[s] = u[at(surface_->orbit[s])];

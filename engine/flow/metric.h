@@ -2,8 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <utility>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/flow/flow_surface.h"
@@ -17,14 +17,14 @@ class Metric {
   public:
     virtual ~Metric() = default;
 
-    /// Moves to conformal factor `u` (V), restoring Delaunay by flips where the scheme flips. Returns false if the flips
-    /// did not end.
+    /// Moves to conformal factor `u` (V), restoring Delaunay by flips where the scheme flips. Returns false
+    /// if the flips did not end.
     virtual bool move_to(std::span<const double> u) = 0;
     /// Remembers the triangulation, so that a rejected step can be taken back.
     virtual void save() {}
     virtual void restore() {}
-    /// Evaluates curvature and area where it stands, and the derivatives where asked. False: some face is no triangle,
-    /// or a number is not finite (curvature() is then the continuous extension or NaN).
+    /// Evaluates curvature and area where it stands, and the derivatives where asked. False: some face is no
+    /// triangle, or a number is not finite (curvature() is then the continuous extension or NaN).
     virtual bool evaluate(bool derivatives) = 0;
 
     /// Adds the curvature of orbit v. // V, radians, of the half for a doubled surface; 0 for unused vertices
@@ -62,7 +62,8 @@ class Metric {
 template <class Real>
 class ScaledMetric final : public Metric {
   public:
-    /// `surface` must outlive the metric. `initial_scale` is added to every u: chords are exp(log_chord + scale + …).
+    /// `surface` must outlive the metric. `initial_scale` is added to every u: chords are exp(log_chord +
+    /// scale + …).
     ScaledMetric(const FlowSurface& surface, Geometry geometry, bool parallel);
 
     bool move_to(std::span<const double> u) override;
@@ -72,7 +73,8 @@ class ScaledMetric final : public Metric {
     [[nodiscard]] const Connectivity& connectivity() const override { return triangulation_.connectivity; }
     [[nodiscard]] std::vector<double> edge_lengths() const override;
 
-    /// Back to the start triangulation (which `start` must be a copy of), for the next solve on the same surface.
+    /// Back to the start triangulation (which `start` must be a copy of), for the next solve on the same
+    /// surface.
     void reset(const IntrinsicTriangulation<Real>& start);
 
   private:
@@ -90,7 +92,9 @@ class PackedMetric final : public Metric {
 
     bool move_to(std::span<const double> u) override;
     bool evaluate(bool derivatives) override;
-    [[nodiscard]] const Connectivity& connectivity() const override { return surface_->triangulation.connectivity; }
+    [[nodiscard]] const Connectivity& connectivity() const override {
+        return surface_->triangulation.connectivity;
+    }
     [[nodiscard]] std::vector<double> edge_lengths() const override;
     [[nodiscard]] std::span<const double> face_areas() const { return face_area_; }
 

@@ -8,7 +8,9 @@
 namespace ricci {
 namespace {
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+std::size_t at(Index i) {
+    return static_cast<std::size_t>(i);
+}
 
 using Clock = std::chrono::steady_clock;
 
@@ -33,10 +35,12 @@ class Recorder {
 };
 
 /// Directional derivative of the energy along `direction` (per unknown) where the metric stands.
-double slope(std::span<const double> curvature, const CurvatureTarget& target, std::span<const double> direction) {
+double slope(std::span<const double> curvature, const CurvatureTarget& target,
+             std::span<const double> direction) {
     double sum = 0.0;
     for (std::size_t v = 0; v < curvature.size(); ++v)
-        if (target.unknown[v] >= 0) sum += direction[at(target.unknown[v])] * (curvature[v] - target.curvature[v]);
+        if (target.unknown[v] >= 0)
+            sum += direction[at(target.unknown[v])] * (curvature[v] - target.curvature[v]);
     return sum;
 }
 
@@ -50,8 +54,8 @@ double residual_square(std::span<const double> curvature, const CurvatureTarget&
     return sum;
 }
 
-void step_along(const std::vector<double>& u, const CurvatureTarget& target, std::span<const double> direction,
-                double step, std::vector<double>& result) {
+void step_along(const std::vector<double>& u, const CurvatureTarget& target,
+                std::span<const double> direction, double step, std::vector<double>& result) {
     result = u;
     for (std::size_t v = 0; v < u.size(); ++v)
         if (target.unknown[v] >= 0) result[v] += step * direction[at(target.unknown[v])];
@@ -62,8 +66,8 @@ struct Standing {
     double slope, residual, square;
 };
 
-/// Whether a trial point is good enough. Convex energy: its derivative along the step has not turned positive, or the
-/// residual halved (near the rounding floor the sign of the derivative is noise).
+/// Whether a trial point is good enough. Convex energy: its derivative along the step has not turned
+/// positive, or the residual halved (near the rounding floor the sign of the derivative is noise).
 bool acceptable(const Metric& metric, const CurvatureTarget& target, std::span<const double> direction,
                 const Standing& before, double step, bool convex) {
     const double residual = residual_max(metric.curvature(), target);
@@ -86,10 +90,11 @@ double residual_max(std::span<const double> curvature, const CurvatureTarget& ta
     return largest;
 }
 
-NewtonSolver::NewtonSolver(const FlowSurface& surface, const CurvatureTarget& target, Definiteness definiteness,
-                           bool many, std::span<const Index> ordering)
+NewtonSolver::NewtonSolver(const FlowSurface& surface, const CurvatureTarget& target,
+                           Definiteness definiteness, bool many, std::span<const Index> ordering)
     : definiteness_(definiteness), solver_(make_symmetric_solver(definiteness)) {
-    base_.build(surface.triangulation.connectivity, unknowns_of_surface(surface, target), target.unknown_count);
+    base_.build(surface.triangulation.connectivity, unknowns_of_surface(surface, target),
+                target.unknown_count);
     if (many) {
         if (ordering.empty()) {
             solver_->choose_ordering(base_.pattern(), Ordering::nested_dissection);
@@ -109,15 +114,16 @@ void NewtonSolver::start_from_base(const Metric& metric, const CurvatureTarget& 
     analysed_ = at_base_;
     factor_is_near_ = false;
     // Edges will flip where the curvature is to change most: around the cones.
-    constexpr double kCone = 1.0;            // radians
-    constexpr int kNear = 3, kFar = 6;       // rings; measured: fewer re-analyses against more fill
+    constexpr double kCone = 1.0;       // radians
+    constexpr int kNear = 3, kFar = 6;  // rings; measured: fewer re-analyses against more fill
     std::vector<Index> cones;
     const auto curvature = metric.curvature();
     for (std::size_t v = 0; v < curvature.size(); ++v)
         if (target.unknown[v] >= 0 && std::abs(target.curvature[v] - curvature[v]) > kCone)
             cones.push_back(static_cast<Index>(v));  // an orbit's first vertex has its number
     if (cones.empty() || cones.size() > 64) return;
-    if (assembler_.reserve(likely_flips(metric.surface().triangulation.connectivity, cones, kNear, kFar))) analysed_ = false;
+    if (assembler_.reserve(likely_flips(metric.surface().triangulation.connectivity, cones, kNear, kFar)))
+        analysed_ = false;
 }
 
 bool NewtonSolver::factorize(SolveOutcome& outcome) {
@@ -149,16 +155,18 @@ bool NewtonSolver::factorize(SolveOutcome& outcome) {
     return false;
 }
 
-bool NewtonSolver::iterate_with_last_factor(double residual, const SolveOptions& options, SolveOutcome& outcome) {
+bool NewtonSolver::iterate_with_last_factor(double residual, const SolveOptions& options,
+                                            SolveOutcome& outcome) {
     // Far from the solution the Hessian near the cones changes too much from step to step for it to pay.
     constexpr double kClose = 0.5;  // radians
     constexpr int kBackSolves = 8;  // cost about half a factorisation
     if (options.factorize_always || !options.convex || !factor_is_near_ || residual > kClose) return false;
-    // Newton squares the residual: a step solved to this accuracy keeps up with it, and the last one need not go beyond
-    // the tolerance.
-    const double accuracy = std::max(std::clamp(0.1 * residual, 1e-7, 1e-2), 0.1 * options.tolerance / residual);
-    const bool solved = conjugate_gradient_.solve(assembler_.pattern(), values_, *solver_, rhs_, accuracy, kBackSolves,
-                                                  direction_);
+    // Newton squares the residual: a step solved to this accuracy keeps up with it, and the last one need not
+    // go beyond the tolerance.
+    const double accuracy =
+        std::max(std::clamp(0.1 * residual, 1e-7, 1e-2), 0.1 * options.tolerance / residual);
+    const bool solved = conjugate_gradient_.solve(assembler_.pattern(), values_, *solver_, rhs_, accuracy,
+                                                  kBackSolves, direction_);
     outcome.conjugate_gradient_iterations += conjugate_gradient_.iterations();
     return solved;
 }
@@ -240,7 +248,8 @@ SolveOutcome NewtonSolver::solve(Metric& metric, const CurvatureTarget& target, 
             if (const auto status = options.interrupted()) return finish(*status);
         }
         const bool first = iteration == 1 && first_ && u == first_start_;
-        if (!find_direction(metric, target, first, residual, options, outcome)) return finish(Status::factorization_failed);
+        if (!find_direction(metric, target, first, residual, options, outcome))
+            return finish(Status::factorization_failed);
         const Standing before{slope(metric.curvature(), target, direction_), residual,
                               residual_square(metric.curvature(), target)};
         double step = 1.0;
@@ -249,7 +258,8 @@ SolveOutcome NewtonSolver::solve(Metric& metric, const CurvatureTarget& target, 
         for (int attempt = 0; attempt < 50; ++attempt) {
             step_along(u, target, direction_, step, trial_);
             // A step so long that the flips do not end is too long.
-            accepted = metric.move_to(trial_) && metric.evaluate(true) && acceptable(metric, target, direction_, before, step, options.convex);
+            accepted = metric.move_to(trial_) && metric.evaluate(true) &&
+                       acceptable(metric, target, direction_, before, step, options.convex);
             if (accepted) break;
             metric.restore();
             step *= 0.5;
@@ -300,7 +310,8 @@ SolveOutcome gradient_descent(Metric& metric, const CurvatureTarget& target, con
         metric.save();
         for (int halving = 0; halving < 60; ++halving, taken *= 0.5) {
             step_along(u, target, direction, taken, trial);
-            accepted = metric.move_to(trial) && metric.evaluate(false) && acceptable(metric, target, direction, before, taken, options.convex);
+            accepted = metric.move_to(trial) && metric.evaluate(false) &&
+                       acceptable(metric, target, direction, before, taken, options.convex);
             if (accepted) break;
             metric.restore();
         }

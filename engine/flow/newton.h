@@ -35,9 +35,11 @@ struct IterationLog {
 struct SolveOptions {
     double tolerance = 1e-10;  // on max |K - target|, radians
     std::int32_t max_iterations = 200;
-    bool convex = true;  // the energy is convex: step control by its directional derivative; else by the residual
-    /// Factorise at every step. Otherwise, once the residual is small, a step is solved by conjugate gradients with the
-    /// last factor as preconditioner where a few back-solves suffice, which is cheaper than a factorisation.
+    bool convex =
+        true;  // the energy is convex: step control by its directional derivative; else by the residual
+    /// Factorise at every step. Otherwise, once the residual is small, a step is solved by conjugate
+    /// gradients with the last factor as preconditioner where a few back-solves suffice, which is cheaper
+    /// than a factorisation.
     bool factorize_always = false;
     /// Asked between steps; a status (timeout, cancelled) ends the solve.
     std::function<std::optional<Status>()> interrupted;
@@ -55,26 +57,28 @@ struct SolveOutcome {
     std::vector<IterationLog> log;
 };
 
-/// Newton for many solves on one surface: the fill-reducing ordering is chosen once; under that ordering, a solve is
-/// analysed once with room for the flips expected near its cones, and again only where a flip leaves that room.
-/// One per thread.
+/// Newton for many solves on one surface: the fill-reducing ordering is chosen once; under that ordering, a
+/// solve is analysed once with room for the flips expected near its cones, and again only where a flip leaves
+/// that room. One per thread.
 class NewtonSolver {
   public:
     /// `target` decides the unknowns; its curvature may differ from solve to solve.
-    /// One solve: minimum degree, analysed once. `many`: nested dissection, and every solve starts from an analysis of the
-    /// base pattern by the same call, so that its bits do not depend on what was solved before.
-    /// `ordering`: one chosen by another solver for the same surface and unknowns, to save choosing it again.
-    NewtonSolver(const FlowSurface& surface, const CurvatureTarget& target, Definiteness definiteness, bool many,
-                 std::span<const Index> ordering = {});
+    /// One solve: minimum degree, analysed once. `many`: nested dissection, and every solve starts from an
+    /// analysis of the base pattern by the same call, so that its bits do not depend on what was solved
+    /// before. `ordering`: one chosen by another solver for the same surface and unknowns, to save choosing
+    /// it again.
+    NewtonSolver(const FlowSurface& surface, const CurvatureTarget& target, Definiteness definiteness,
+                 bool many, std::span<const Index> ordering = {});
 
     [[nodiscard]] std::span<const Index> ordering() const { return solver_->ordering(); }
 
-    /// Solves K(u) = target from `u` (V), which becomes the solution. `metric` must stand at the start triangulation.
-    /// At an unsuccessful end `u` is the last accepted iterate.
+    /// Solves K(u) = target from `u` (V), which becomes the solution. `metric` must stand at the start
+    /// triangulation. At an unsuccessful end `u` is the last accepted iterate.
     SolveOutcome solve(Metric& metric, const CurvatureTarget& target, const SolveOptions& options,
                        std::vector<double>& u);
 
-    /// Factorises the Hessian at `u` once; later solves that start at the same `u` use it for their first step.
+    /// Factorises the Hessian at `u` once; later solves that start at the same `u` use it for their first
+    /// step.
     void prepare_first_factor(Metric& metric, const std::vector<double>& u);
 
     /// Bytes of one factor.
@@ -92,17 +96,18 @@ class NewtonSolver {
     std::unique_ptr<SymmetricSolver> solver_, first_;
     std::vector<double> first_start_;  // u of the prepared factor
     HessianAssembler base_, assembler_;
-    bool ordered_ = false;    // solver_ has a fill-reducing ordering
-    bool at_base_ = false;    // solver_ is analysed for base_'s pattern
-    bool analysed_ = false;   // solver_ is analysed for assembler_'s pattern
+    bool ordered_ = false;         // solver_ has a fill-reducing ordering
+    bool at_base_ = false;         // solver_ is analysed for base_'s pattern
+    bool analysed_ = false;        // solver_ is analysed for assembler_'s pattern
     bool factor_is_near_ = false;  // solver_ holds an unshifted factor of this solve
     ConjugateGradient conjugate_gradient_;
-    Index pinned_ = -1;       // unknown held during a scale-free solve
+    Index pinned_ = -1;  // unknown held during a scale-free solve
     std::vector<double> values_, rhs_, direction_, trial_;
 };
 
-/// Gradient descent du/dt = target - K (thesis section 4.3.1, equation 30, with u = log gamma) by explicit Euler steps.
-/// The time step grows while the energy's directional derivative stays negative and halves where it turns.
+/// Gradient descent du/dt = target - K (thesis section 4.3.1, equation 30, with u = log gamma) by explicit
+/// Euler steps. The time step grows while the energy's directional derivative stays negative and halves where
+/// it turns.
 SolveOutcome gradient_descent(Metric& metric, const CurvatureTarget& target, const SolveOptions& options,
                               std::vector<double>& u);
 

@@ -13,11 +13,14 @@ namespace {
 
 using std::numbers::pi;
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+std::size_t at(Index i) {
+    return static_cast<std::size_t>(i);
+}
 
 void fill_uniform(const FlowSurface& surface, std::vector<double>& curvature) {
     if (surface.topology.boundaries > 0)
-        throw std::invalid_argument("target uniform needs a closed surface; use target boundary for one with boundary");
+        throw std::invalid_argument(
+            "target uniform needs a closed surface; use target boundary for one with boundary");
     const double value = 2.0 * pi * surface.topology.euler_characteristic / surface.topology.vertices;
     for (std::size_t v = 0; v < curvature.size(); ++v)
         if (surface.used[v]) curvature[v] = value;
@@ -39,11 +42,14 @@ CurvatureTarget make_target(const FlowSurface& surface, const FlowOptions& optio
     CurvatureTarget target;
     target.curvature.assign(vertices, 0.0);
     switch (options.target.value_or(TargetKind::flat)) {
-        case TargetKind::flat: break;
+        case TargetKind::flat:
+            break;
         case TargetKind::uniform:
             if (geometry == Geometry::euclidean) fill_uniform(surface, target.curvature);
             break;
-        case TargetKind::boundary: fill_boundary(surface, target.curvature); break;
+        case TargetKind::boundary:
+            fill_boundary(surface, target.curvature);
+            break;
         case TargetKind::values:
             if (options.target_values.size() != vertices)
                 throw std::invalid_argument(fmt::format("the target has {} values, the surface {} vertices",
@@ -53,11 +59,12 @@ CurvatureTarget make_target(const FlowSurface& surface, const FlowOptions& optio
     }
     for (const Cone& cone : options.cones) {
         if (cone.vertex < 0 || at(cone.vertex) >= vertices || !surface.used[at(cone.vertex)])
-            throw std::invalid_argument(fmt::format("cone at vertex {}: there is no such vertex (0 … {})", cone.vertex,
-                                                    vertices - 1));
+            throw std::invalid_argument(fmt::format("cone at vertex {}: there is no such vertex (0 … {})",
+                                                    cone.vertex, vertices - 1));
         if (boundary == Boundary::geodesic && surface.boundary[at(cone.vertex)])
             throw std::invalid_argument(fmt::format(
-                "cone at boundary vertex {}: a geodesic boundary has no curvature; use --boundary curvature", cone.vertex));
+                "cone at boundary vertex {}: a geodesic boundary has no curvature; use --boundary curvature",
+                cone.vertex));
         target.curvature[at(cone.vertex)] = cone.curvature;
     }
     target.unknown.assign(vertices, -1);
@@ -72,7 +79,8 @@ CurvatureTarget make_target(const FlowSurface& surface, const FlowOptions& optio
         }
         target.unknown[v] = target.unknown_count++;
     }
-    if (target.unknown_count == 0) throw std::invalid_argument("every vertex lies on the free boundary: nothing to solve");
+    if (target.unknown_count == 0)
+        throw std::invalid_argument("every vertex lies on the free boundary: nothing to solve");
     target.scale_free = geometry == Geometry::euclidean && !fixed;
     return target;
 }
@@ -87,7 +95,8 @@ std::string inadmissibility(const FlowSurface& surface, const CurvatureTarget& t
         const double limit = surface.boundary[v] ? pi : 2.0 * pi;
         if (value >= limit)
             return fmt::format("target curvature {:.9g} of {} vertex {} is not below {}", value,
-                               surface.boundary[v] ? "boundary" : "interior", v, surface.boundary[v] ? "pi" : "2 pi");
+                               surface.boundary[v] ? "boundary" : "interior", v,
+                               surface.boundary[v] ? "pi" : "2 pi");
         sum += value;
     }
     const double needed = 2.0 * pi * surface.topology.euler_characteristic;
@@ -95,17 +104,20 @@ std::string inadmissibility(const FlowSurface& surface, const CurvatureTarget& t
     if (has_free_part) return {};
     const double slack = 1e-11 * (10.0 + std::abs(needed));
     if (geometry == Geometry::euclidean && std::abs(sum - needed) > slack)
-        return fmt::format("target curvatures sum to {:.12g}, but Gauss-Bonnet asks for 2 pi chi = {:.12g} (chi = {}), "
-                           "{:.3g} apart",
-                           sum, needed, surface.topology.euler_characteristic, sum - needed);
+        return fmt::format(
+            "target curvatures sum to {:.12g}, but Gauss-Bonnet asks for 2 pi chi = {:.12g} (chi = {}), "
+            "{:.3g} apart",
+            sum, needed, surface.topology.euler_characteristic, sum - needed);
     if (geometry == Geometry::hyperbolic && sum <= needed)
-        return fmt::format("target curvatures sum to {:.12g}; a hyperbolic metric needs more than 2 pi chi = {:.12g} "
-                           "(chi = {}), the difference being its area",
-                           sum, needed, surface.topology.euler_characteristic);
+        return fmt::format(
+            "target curvatures sum to {:.12g}; a hyperbolic metric needs more than 2 pi chi = {:.12g} "
+            "(chi = {}), the difference being its area",
+            sum, needed, surface.topology.euler_characteristic);
     if (geometry == Geometry::spherical && sum >= needed)
-        return fmt::format("target curvatures sum to {:.12g}; a spherical metric needs less than 2 pi chi = {:.12g} "
-                           "(chi = {}), the difference being its area",
-                           sum, needed, surface.topology.euler_characteristic);
+        return fmt::format(
+            "target curvatures sum to {:.12g}; a spherical metric needs less than 2 pi chi = {:.12g} "
+            "(chi = {}), the difference being its area",
+            sum, needed, surface.topology.euler_characteristic);
     return {};
 }
 
@@ -120,7 +132,8 @@ double initial_log_scale(const SurfaceMesh& mesh, std::span<const double> curvat
 }
 
 std::optional<AdmissibilityViolation> find_violation(const Connectivity& c, std::span<const double> eta,
-                                                     const CurvatureTarget& target, std::span<const double> u) {
+                                                     const CurvatureTarget& target,
+                                                     std::span<const double> u) {
     const std::vector<std::uint8_t> on_boundary = boundary_vertices(c);
     std::vector<std::vector<Index>> corners(at(c.vertex_count));
     for (Index h = 0; h < c.halfedge_count(); ++h) corners[at(c.tail[at(h)])].push_back(h);
@@ -152,7 +165,8 @@ std::optional<AdmissibilityViolation> find_violation(const Connectivity& c, std:
     std::size_t best = 0;
     double best_sum = 0.0, best_bound = 0.0;
     // Proper subsets only: all unknowns together are one where others (a free boundary) are fixed.
-    const auto used = std::count_if(corners.begin(), corners.end(), [](const auto& list) { return !list.empty(); });
+    const auto used =
+        std::count_if(corners.begin(), corners.end(), [](const auto& list) { return !list.empty(); });
     const std::size_t largest = order.size() - (static_cast<std::size_t>(used) == order.size() ? 1 : 0);
     for (std::size_t k = 0; k < largest; ++k) {
         const Index v = order[k];
@@ -173,7 +187,8 @@ std::optional<AdmissibilityViolation> find_violation(const Connectivity& c, std:
         }
     }
     if (best == 0) return std::nullopt;
-    AdmissibilityViolation violation{{order.begin(), order.begin() + static_cast<std::ptrdiff_t>(best)}, best_sum, best_bound};
+    AdmissibilityViolation violation{
+        {order.begin(), order.begin() + static_cast<std::ptrdiff_t>(best)}, best_sum, best_bound};
     std::sort(violation.vertices.begin(), violation.vertices.end());
     return violation;
 }
@@ -183,9 +198,10 @@ std::string describe(const AdmissibilityViolation& violation) {
     for (std::size_t k = 0; k < violation.vertices.size() && k < 8; ++k)
         list += fmt::format("{}{}", k == 0 ? "" : ", ", violation.vertices[k]);
     if (violation.vertices.size() > 8) list += fmt::format(", … ({} in all)", violation.vertices.size());
-    return fmt::format("the set I = {{{}}} violates Theorem 4: sum of target curvature over I is {:.9g}, but must exceed "
-                       "-sum_Lk(I) (pi - phi) + 2 pi chi(F_I) = {:.9g}",
-                       list, violation.curvature_sum, violation.bound);
+    return fmt::format(
+        "the set I = {{{}}} violates Theorem 4: sum of target curvature over I is {:.9g}, but must exceed "
+        "-sum_Lk(I) (pi - phi) + 2 pi chi(F_I) = {:.9g}",
+        list, violation.curvature_sum, violation.bound);
 }
 
 }  // namespace ricci

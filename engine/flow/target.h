@@ -11,13 +11,14 @@ namespace ricci {
 CurvatureTarget make_target(const FlowSurface& surface, const FlowOptions& options, Geometry geometry,
                             Boundary boundary);
 
-/// The conditions that hold for every triangulation: curvature below 2 pi (pi on the boundary), total 2 pi chi
-/// (Euclidean) or above it (hyperbolic). Empty when kept, else a sentence.
+/// The conditions that hold for every triangulation: curvature below 2 pi (pi on the boundary), total 2 pi
+/// chi (Euclidean) or above it (hyperbolic). Empty when kept, else a sentence.
 std::string inadmissibility(const FlowSurface& surface, const CurvatureTarget& target, Geometry geometry,
                             Boundary boundary);
 
-/// The constant u that scales the input to the area which Gauss-Bonnet gives the target metric (hyperbolic, spherical): where
-/// the flow starts. 0 in the plane, and where no such area exists. `curvature`: V, the target's.
+/// The constant u that scales the input to the area which Gauss-Bonnet gives the target metric (hyperbolic,
+/// spherical): where the flow starts. 0 in the plane, and where no such area exists. `curvature`: V, the
+/// target's.
 double initial_log_scale(const SurfaceMesh& mesh, std::span<const double> curvature, Geometry geometry);
 
 /// Theorem 4 of the thesis (section 3.5; Chow, Luo 2003) for a vertex set I of a circle packing on a fixed
@@ -28,10 +29,13 @@ struct AdmissibilityViolation {
     double curvature_sum = 0.0, bound = 0.0;
 };
 
-/// Looks for a violating set among single vertices and the sublevel sets of `u` (a flow towards an inadmissible
-/// target lets the circles of such a set shrink for ever). `eta`: 3F; phi = acos(eta) for eta in [0, 1], 0 above.
-std::optional<AdmissibilityViolation> find_violation(const Connectivity& connectivity, std::span<const double> eta,
-                                                     const CurvatureTarget& target, std::span<const double> u);
+/// Looks for a violating set among single vertices and the sublevel sets of `u` (a flow towards an
+/// inadmissible target lets the circles of such a set shrink for ever). `eta`: 3F; phi = acos(eta) for eta in
+/// [0, 1], 0 above.
+std::optional<AdmissibilityViolation> find_violation(const Connectivity& connectivity,
+                                                     std::span<const double> eta,
+                                                     const CurvatureTarget& target,
+                                                     std::span<const double> u);
 
 /// The sentence that reports a violation.
 std::string describe(const AdmissibilityViolation& violation);

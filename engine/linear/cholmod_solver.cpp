@@ -52,8 +52,8 @@ class CholmodSolver final : public SymmetricSolver {
     void choose_ordering(const SymmetricPattern& pattern, Ordering ordering) override {
         common_.method[0].ordering = ordering == Ordering::nested_dissection ? CHOLMOD_METIS : CHOLMOD_AMD;
         {
-            // METIS draws from the C library's one random sequence, which it seeds itself: two threads at a time would get
-            // orderings, and so bits, that depend on their timing.
+            // METIS draws from the C library's one random sequence, which it seeds itself: two threads at a
+            // time would get orderings, and so bits, that depend on their timing.
             static std::mutex metis;
             const std::lock_guard lock(metis);
             analyze_with(pattern, nullptr);
@@ -63,7 +63,9 @@ class CholmodSolver final : public SymmetricSolver {
     }
 
     [[nodiscard]] std::span<const Index> ordering() const override { return permutation_; }
-    void use_ordering(std::span<const Index> ordering) override { permutation_.assign(ordering.begin(), ordering.end()); }
+    void use_ordering(std::span<const Index> ordering) override {
+        permutation_.assign(ordering.begin(), ordering.end());
+    }
 
     void analyze(const SymmetricPattern& pattern) override {
         common_.method[0].ordering = CHOLMOD_GIVEN;
@@ -71,8 +73,9 @@ class CholmodSolver final : public SymmetricSolver {
     }
 
     bool factorize(std::span<const double> values) override {
-        // CHOLMOD's supernodal code opens an OpenMP region with a thread count of its own, once per worker: oversubscription,
-        // which others have measured at three orders of magnitude. No active levels: every region runs on its caller.
+        // CHOLMOD's supernodal code opens an OpenMP region with a thread count of its own, once per worker:
+        // oversubscription, which others have measured at three orders of magnitude. No active levels: every
+        // region runs on its caller.
         omp_set_max_active_levels(0);
         cholmod_sparse matrix = view(pattern_, values);
         cholmod_factorize(&matrix, factor_, &common_);
@@ -88,7 +91,8 @@ class CholmodSolver final : public SymmetricSolver {
         b.xtype = CHOLMOD_REAL;
         b.dtype = CHOLMOD_DOUBLE;
         omp_set_max_active_levels(0);
-        if (!cholmod_solve2(CHOLMOD_A, factor_, &b, nullptr, &solution_, nullptr, &work_y_, &work_e_, &common_))
+        if (!cholmod_solve2(CHOLMOD_A, factor_, &b, nullptr, &solution_, nullptr, &work_y_, &work_e_,
+                            &common_))
             throw std::bad_alloc();
         const auto* x = static_cast<const double*>(solution_->x);
         std::copy(x, x + solution.size(), solution.begin());
@@ -119,7 +123,8 @@ class CholmodSolver final : public SymmetricSolver {
         cholmod_sparse matrix = view(pattern_, {});
         factor_ = cholmod_analyze_p(&matrix, permutation, nullptr, 0, &common_);
         if (factor_ == nullptr) throw std::bad_alloc();
-        factor_bytes_ = static_cast<std::int64_t>(8.0 * std::max(common_.lnz, static_cast<double>(factor_->xsize)));
+        factor_bytes_ =
+            static_cast<std::int64_t>(8.0 * std::max(common_.lnz, static_cast<double>(factor_->xsize)));
     }
 
     cholmod_common common_{};

@@ -6,7 +6,9 @@
 namespace ricci {
 namespace {
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+std::size_t at(Index i) {
+    return static_cast<std::size_t>(i);
+}
 
 double dot(std::span<const double> a, std::span<const double> b) {
     double sum = 0.0;
@@ -18,7 +20,8 @@ double dot(std::span<const double> a, std::span<const double> b) {
 constexpr double kGoodEnough = 1e-2;
 
 /// y = A x from the lower triangle.
-void multiply(const SymmetricPattern& a, std::span<const double> values, std::span<const double> x, std::span<double> y) {
+void multiply(const SymmetricPattern& a, std::span<const double> values, std::span<const double> x,
+              std::span<double> y) {
     std::fill(y.begin(), y.end(), 0.0);
     for (Index j = 0; j < a.size(); ++j) {
         const double xj = x[at(j)];
@@ -38,9 +41,9 @@ void multiply(const SymmetricPattern& a, std::span<const double> values, std::sp
 
 }  // namespace
 
-bool ConjugateGradient::solve(const SymmetricPattern& pattern, std::span<const double> values, SymmetricSolver& nearby,
-                              std::span<const double> rhs, double relative_tolerance, int max_iterations,
-                              std::span<double> solution) {
+bool ConjugateGradient::solve(const SymmetricPattern& pattern, std::span<const double> values,
+                              SymmetricSolver& nearby, std::span<const double> rhs, double relative_tolerance,
+                              int max_iterations, std::span<double> solution) {
     iterations_ = 0;
     const std::size_t n = rhs.size();
     residual_.assign(rhs.begin(), rhs.end());
@@ -72,9 +75,11 @@ bool ConjugateGradient::solve(const SymmetricPattern& pattern, std::span<const d
         if (norm <= goal) return true;
         if (!std::isfinite(norm)) return false;
         if (iterations_ >= max_iterations) return norm <= kGoodEnough * goal / relative_tolerance;
-        // Give up early where the pace so far will not do: log(norm/|b|) is about proportional to the iterations.
+        // Give up early where the pace so far will not do: log(norm/|b|) is about proportional to the
+        // iterations.
         const double start = goal / relative_tolerance;
-        if (iterations_ >= 3 && std::log(norm / start) * max_iterations > std::log(relative_tolerance) * iterations_)
+        if (iterations_ >= 3 &&
+            std::log(norm / start) * max_iterations > std::log(relative_tolerance) * iterations_)
             return false;
     }
 }

@@ -15,7 +15,9 @@ class EigenSolver final : public SymmetricSolver {
   public:
     explicit EigenSolver(Definiteness definiteness) : positive_(definiteness == Definiteness::positive) {}
 
-    void choose_ordering(const SymmetricPattern& pattern, Ordering /*ordering*/) override { analyze(pattern); }
+    void choose_ordering(const SymmetricPattern& pattern, Ordering /*ordering*/) override {
+        analyze(pattern);
+    }
 
     // Eigen orders anew at every analysis, which for minimum degree costs little.
     [[nodiscard]] std::span<const Index> ordering() const override { return {}; }
@@ -46,8 +48,12 @@ class EigenSolver final : public SymmetricSolver {
   private:
     [[nodiscard]] Eigen::Map<const SparseMatrix> view() const {
         const auto n = static_cast<Eigen::Index>(pattern_.size());
-        return {n, n, static_cast<Eigen::Index>(pattern_.row.size()), pattern_.column_begin.data(),
-                pattern_.row.data(), values_.data()};
+        return {n,
+                n,
+                static_cast<Eigen::Index>(pattern_.row.size()),
+                pattern_.column_begin.data(),
+                pattern_.row.data(),
+                values_.data()};
     }
 
     bool positive_;
@@ -64,7 +70,8 @@ std::unique_ptr<SymmetricSolver> make_symmetric_solver(Definiteness definiteness
 
 std::string_view symmetric_solver_name() {
     static const std::string name = "Eigen " + std::to_string(EIGEN_WORLD_VERSION) + "." +
-                                    std::to_string(EIGEN_MAJOR_VERSION) + "." + std::to_string(EIGEN_MINOR_VERSION);
+                                    std::to_string(EIGEN_MAJOR_VERSION) + "." +
+                                    std::to_string(EIGEN_MINOR_VERSION);
     return name;
 }
 

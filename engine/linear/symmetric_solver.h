@@ -20,12 +20,12 @@ struct SymmetricPattern {
     friend bool operator==(const SymmetricPattern&, const SymmetricPattern&) = default;
 };
 
-/// Fill-reducing orderings. Nested dissection costs several times the analysis of minimum degree and gives the sparser
-/// factor: for many solves on one pattern. Eigen knows minimum degree only.
+/// Fill-reducing orderings. Nested dissection costs several times the analysis of minimum degree and gives
+/// the sparser factor: for many solves on one pattern. Eigen knows minimum degree only.
 enum class Ordering : std::uint8_t { minimum_degree, nested_dissection };
 
-/// positive: Cholesky, fails on anything not numerically positive definite. indefinite: L D L^T without pivoting, fails
-/// on a zero pivot only; no bound on its growth, so callers check residuals.
+/// positive: Cholesky, fails on anything not numerically positive definite. indefinite: L D L^T without
+/// pivoting, fails on a zero pivot only; no bound on its growth, so callers check residuals.
 enum class Definiteness : std::uint8_t { positive, indefinite };
 
 /// One factor and its workspace; not thread-safe, one per thread.
@@ -35,14 +35,16 @@ class SymmetricSolver {
 
     /// Chooses the fill-reducing ordering for a pattern (the expensive part) and analyses it.
     virtual void choose_ordering(const SymmetricPattern& pattern, Ordering ordering) = 0;
-    /// The ordering in use, to be shared with other solvers of the same size. Empty where the implementation keeps none.
+    /// The ordering in use, to be shared with other solvers of the same size. Empty where the implementation
+    /// keeps none.
     [[nodiscard]] virtual std::span<const Index> ordering() const = 0;
     /// Takes over an ordering instead of choosing one; analyse afterwards.
     virtual void use_ordering(std::span<const Index> ordering) = 0;
-    /// Symbolic analysis of a pattern of the same size under the ordering chosen before: cheap, for patterns that
-    /// a few edge flips changed.
+    /// Symbolic analysis of a pattern of the same size under the ordering chosen before: cheap, for patterns
+    /// that a few edge flips changed.
     virtual void analyze(const SymmetricPattern& pattern) = 0;
-    /// Numeric factorisation. `values`: one per nonzero of the analysed pattern. False: not (positive) definite.
+    /// Numeric factorisation. `values`: one per nonzero of the analysed pattern. False: not (positive)
+    /// definite.
     virtual bool factorize(std::span<const double> values) = 0;
     /// Solves with the last factor. `rhs`, `solution`: n each (may be the same span).
     virtual void solve(std::span<const double> rhs, std::span<double> solution) = 0;

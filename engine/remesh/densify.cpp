@@ -8,10 +8,14 @@
 namespace ricci {
 namespace {
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+std::size_t at(Index i) {
+    return static_cast<std::size_t>(i);
+}
 
 using Edge = std::pair<Index, Index>;
-Edge edge_of(Index a, Index b) { return std::minmax(a, b); }
+Edge edge_of(Index a, Index b) {
+    return std::minmax(a, b);
+}
 
 /// Triangles with points, refined in place; points lie on the old faces, so the surface stays the same.
 struct Refinement {
@@ -122,7 +126,8 @@ struct Refinement {
 }  // namespace
 
 DensifiedMesh densify_around(const SurfaceMesh& mesh, Index vertex, Index valence, int rings, int levels) {
-    if (mesh.intrinsic()) throw std::invalid_argument("densify needs vertex positions; an intrinsic surface has none");
+    if (mesh.intrinsic())
+        throw std::invalid_argument("densify needs vertex positions; an intrinsic surface has none");
     Refinement r{mesh.points, triangles_of(mesh.connectivity)};
     for (Index missing = valence - r.valence(vertex); missing > 0; missing = valence - r.valence(vertex)) {
         std::vector<Edge> edges = r.link(vertex);
@@ -141,7 +146,8 @@ DensifiedMesh densify_around(const SurfaceMesh& mesh, Index vertex, Index valenc
     DensifiedMesh result;
     result.mesh = make_surface_mesh(std::move(r.points), r.triangles);
     result.mesh.input_vertex.assign(mesh.input_vertex.begin(), mesh.input_vertex.end());
-    result.mesh.input_vertex.resize(result.mesh.points.size(), -1);  // new vertices have no number in the input
+    result.mesh.input_vertex.resize(result.mesh.points.size(),
+                                    -1);  // new vertices have no number in the input
     result.valence = 0;
     for (const Index v : result.mesh.connectivity.tail) result.valence += v == vertex ? 1 : 0;
     return result;

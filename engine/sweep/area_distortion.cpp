@@ -6,7 +6,9 @@
 namespace ricci {
 namespace {
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+std::size_t at(Index i) {
+    return static_cast<std::size_t>(i);
+}
 
 /// Mean square of `log_ratio[f]` (log of the local change of area) against the change of the total. Areas as
 /// exponentials relative to the largest ratio, so that factors of e^48 neither over- nor underflow the sum.

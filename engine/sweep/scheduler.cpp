@@ -45,12 +45,12 @@ struct Seat {
     std::unique_ptr<SweepWorker> worker;
 };
 
-/// The queue all threads draw from. Its state is under one mutex; opening items and solving happen outside of it.
-/// Memory: a thread gives its worker back before it waits, so those who wait hold nothing.
+/// The queue all threads draw from. Its state is under one mutex; opening items and solving happen outside of
+/// it. Memory: a thread gives its worker back before it waits, so those who wait hold nothing.
 class Queue {
   public:
-    Queue(std::size_t sources, const std::function<std::vector<SweepTask>(std::size_t)>& open, SweepSink& sink,
-          const SchedulerOptions& options)
+    Queue(std::size_t sources, const std::function<std::vector<SweepTask>(std::size_t)>& open,
+          SweepSink& sink, const SchedulerOptions& options)
         : sources_(sources), open_(&open), sink_(&sink), options_(&options) {}
 
     void work() {
@@ -142,10 +142,11 @@ class Queue {
         if (task.vertices.empty()) {
             sink_->item_finished(task.item, 0.0);
         } else if (options_->max_memory > 0 && need > options_->max_memory) {
-            sink_->item_failed(task.item, Status::out_of_memory,
-                               fmt::format("one solve needs about {:.0f} MB, more than --max-memory allows ({:.0f} MB)",
-                                           static_cast<double>(need) / 1e6,
-                                           static_cast<double>(options_->max_memory) / 1e6));
+            sink_->item_failed(
+                task.item, Status::out_of_memory,
+                fmt::format("one solve needs about {:.0f} MB, more than --max-memory allows ({:.0f} MB)",
+                            static_cast<double>(need) / 1e6,
+                            static_cast<double>(options_->max_memory) / 1e6));
         } else {
             used_memory_ += surface.shared_bytes();
             solves_known_ += static_cast<std::int64_t>(task.vertices.size());
@@ -267,14 +268,15 @@ class SplitMix64 {
 
 }  // namespace
 
-void run_sweeps(std::size_t sources, const std::function<std::vector<SweepTask>(std::size_t)>& open, SweepSink& sink,
-                const SchedulerOptions& options) {
+void run_sweeps(std::size_t sources, const std::function<std::vector<SweepTask>(std::size_t)>& open,
+                SweepSink& sink, const SchedulerOptions& options) {
     Queue queue(sources, open, sink, options);
     run_workers(std::max(options.threads, 1), [&](int) { queue.work(); });
     queue.rethrow();
 }
 
-std::vector<Index> sample_vertices(const std::vector<Index>& candidates, std::int64_t count, std::uint64_t seed) {
+std::vector<Index> sample_vertices(const std::vector<Index>& candidates, std::int64_t count,
+                                   std::uint64_t seed) {
     std::vector<Index> drawn = candidates;
     if (count < static_cast<std::int64_t>(drawn.size())) {
         SplitMix64 random(seed);

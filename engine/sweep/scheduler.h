@@ -21,10 +21,10 @@ struct SweepTask {
 
 struct SchedulerOptions {
     int threads = 1;
-    std::int64_t max_memory = 0;      // bytes for surfaces and workers; 0: no limit
-    double timeout_seconds = 0.0;     // per solve; 0: none
-    double block_seconds = 5.0;       // a block of solves is handed over about this often
-    std::function<bool()> stop;       // cancelled (a signal): finish nothing more, hand over what is finished
+    std::int64_t max_memory = 0;   // bytes for surfaces and workers; 0: no limit
+    double timeout_seconds = 0.0;  // per solve; 0: none
+    double block_seconds = 5.0;    // a block of solves is handed over about this often
+    std::function<bool()> stop;    // cancelled (a signal): finish nothing more, hand over what is finished
 };
 
 struct SchedulerProgress {
@@ -44,13 +44,15 @@ class SweepSink {
     virtual void progress(const SchedulerProgress& progress) = 0;
 };
 
-/// Sweeps the surfaces of `sources` sources. `open(i)` makes those of the i-th; it is called in ascending order, one call
-/// at a time, when workers run out of vertices. Its exceptions, and those of the sink (output lost), stop
-/// everything and come through: what concerns one source alone, `open` records itself.
-void run_sweeps(std::size_t sources, const std::function<std::vector<SweepTask>(std::size_t)>& open, SweepSink& sink,
-                const SchedulerOptions& options);
+/// Sweeps the surfaces of `sources` sources. `open(i)` makes those of the i-th; it is called in ascending
+/// order, one call at a time, when workers run out of vertices. Its exceptions, and those of the sink (output
+/// lost), stop everything and come through: what concerns one source alone, `open` records itself.
+void run_sweeps(std::size_t sources, const std::function<std::vector<SweepTask>(std::size_t)>& open,
+                SweepSink& sink, const SchedulerOptions& options);
 
-/// Every vertex, or `count` of them drawn without replacement by Fisher-Yates on SplitMix64 seeded with `seed`, ascending.
-std::vector<Index> sample_vertices(const std::vector<Index>& candidates, std::int64_t count, std::uint64_t seed);
+/// Every vertex, or `count` of them drawn without replacement by Fisher-Yates on SplitMix64 seeded with
+/// `seed`, ascending.
+std::vector<Index> sample_vertices(const std::vector<Index>& candidates, std::int64_t count,
+                                   std::uint64_t seed);
 
 }  // namespace ricci

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
 
 #include "engine/flow/target.h"
 #include "engine/remesh/densify.h"
@@ -17,7 +18,9 @@ namespace {
 
 using std::numbers::pi;
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+std::size_t at(Index i) {
+    return static_cast<std::size_t>(i);
+}
 
 std::string explain_inadmissible(const Topology& topology, const SweepOptions& options, double cone) {
     const bool absorbs = options.boundary == Boundary::free && topology.boundaries > 0;
@@ -25,16 +28,19 @@ std::string explain_inadmissible(const Topology& topology, const SweepOptions& o
         return cone < 2.0 * pi ? std::string() : "a cone's curvature must stay below 2 pi";
     const Index chi = topology.euler_characteristic;
     if (chi == 0)
-        return "chi = 0 needs no cone: the flat metric has none. Use 'ricci flow' (target flat) instead of a sweep";
+        return "chi = 0 needs no cone: the flat metric has none. Use 'ricci flow' (target flat) instead of a "
+               "sweep";
     if (chi > 0)
-        return fmt::format("chi = {} admits no single cone: its curvature would have to be {} pi, but a cone's stays "
-                           "below 2 pi. Use 'ricci flow' with the spherical geometry, several cones (--cone), or target "
-                           "boundary for a disk",
-                           chi, 2 * chi);
+        return fmt::format(
+            "chi = {} admits no single cone: its curvature would have to be {} pi, but a cone's stays "
+            "below 2 pi. Use 'ricci flow' with the spherical geometry, several cones (--cone), or target "
+            "boundary for a disk",
+            chi, 2 * chi);
     if (!absorbs && std::abs(cone - 2.0 * pi * chi) > 1e-11)
-        return fmt::format("one cone must carry 2 pi chi = {:.12g} (Gauss-Bonnet), not {:.12g}; with boundary, "
-                           "'--boundary free' lets the boundary take the rest",
-                           2.0 * pi * chi, cone);
+        return fmt::format(
+            "one cone must carry 2 pi chi = {:.12g} (Gauss-Bonnet), not {:.12g}; with boundary, "
+            "'--boundary free' lets the boundary take the rest",
+            2.0 * pi * chi, cone);
     return {};
 }
 
@@ -60,20 +66,23 @@ SweepSurface::SweepSurface(SurfaceMesh mesh, const SweepOptions& options)
     if (!inadmissible_.empty()) return;
     area_ = face_areas(mesh_);
     const bool scaling = options.scheme == Scheme::vertex_scaling;
-    surface_ = make_flow_surface(mesh_, scaling && options.boundary != Boundary::free, scaling && options.delaunay);
+    surface_ =
+        make_flow_surface(mesh_, scaling && options.boundary != Boundary::free, scaling && options.delaunay);
     target_ = make_target(surface_, flow_options(options), Geometry::euclidean, options.boundary);
     const NewtonSolver ordered(surface_, target_, Definiteness::positive, true);
     ordering_.assign(ordered.ordering().begin(), ordered.ordering().end());
     if (scaling) {
         start_ = rounded(surface_.triangulation);
     } else {
-        packing_ = initial_circle_packing(mesh_.connectivity, mesh_.edge_length, Geometry::euclidean, options.scheme);
+        packing_ = initial_circle_packing(mesh_.connectivity, mesh_.edge_length, Geometry::euclidean,
+                                          options.scheme);
     }
 }
 
 std::int64_t SweepSurface::worker_bytes() const {
-    // Per halfedge: two triangulations, fields and workspace; per unknown: a nested-dissection factor of about
-    // 7.75 n log2 n entries (George 1973's constant for a grid), twice (own and first step), and its pattern.
+    // Per halfedge: two triangulations, fields and workspace; per unknown: a nested-dissection factor of
+    // about 7.75 n log2 n entries (George 1973's constant for a grid), twice (own and first step), and its
+    // pattern.
     const auto halfedges = static_cast<double>(surface_.triangulation.log_chord.size());
     const auto n = static_cast<double>(std::max<Index>(target_.unknown_count, 2));
     return static_cast<std::int64_t>(halfedges * 140.0 + n * (2.0 * 8.0 * 7.75 * std::log2(n) + 400.0));
@@ -86,11 +95,13 @@ std::int64_t SweepSurface::shared_bytes() const {
 
 SweepWorker::SweepWorker(std::shared_ptr<const SweepSurface> surface)
     : shared_(std::move(surface)), target_(shared_->target_) {
-    if (shared_->options_.densify && shared_->options_.scheme != Scheme::vertex_scaling) return;  // a mesh per vertex
+    if (shared_->options_.densify && shared_->options_.scheme != Scheme::vertex_scaling)
+        return;  // a mesh per vertex
     newton_ = std::make_unique<NewtonSolver>(shared_->surface_, target_, Definiteness::positive, true,
                                              shared_->ordering_);
     if (shared_->packing_) {
-        packed_ = std::make_unique<PackedMetric>(shared_->surface_, *shared_->packing_, Geometry::euclidean, false);
+        packed_ =
+            std::make_unique<PackedMetric>(shared_->surface_, *shared_->packing_, Geometry::euclidean, false);
         return;
     }
     metric_ = std::make_unique<ScaledMetric<double>>(shared_->surface_, Geometry::euclidean, false);
@@ -100,8 +111,13 @@ SweepWorker::SweepWorker(std::shared_ptr<const SweepSurface> surface)
 SweepWorker::~SweepWorker() = default;
 
 SweepSolve SweepWorker::solve(Index vertex, const std::function<std::optional<Status>()>& interrupted) {
+    const std::vector<Index>& candidates = shared_->candidates_;
+    if (!std::binary_search(candidates.begin(), candidates.end(), vertex))
+        throw std::invalid_argument(fmt::format("vertex {} is no interior vertex of the surface", vertex));
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
+    if (!std::binary_search(shared_->candidates_.begin(), shared_->candidates_.end(), vertex))
+        throw std::invalid_argument(fmt::format("vertex {} is no interior vertex of this surface", vertex));
     SweepSolve result;
     result.vertex = vertex;
     result.area_distortion = std::numeric_limits<double>::quiet_NaN();
@@ -163,14 +179,16 @@ void SweepWorker::solve_scaling(SweepSolve& result, const SolveOptions& options)
                        result.status == Status::not_finite || result.status == Status::inadmissible_metric;
     if (stuck) {
         if (!extended_)
-            extended_ = std::make_unique<ScaledMetric<long double>>(shared_->surface_, Geometry::euclidean, false);
+            extended_ =
+                std::make_unique<ScaledMetric<long double>>(shared_->surface_, Geometry::euclidean, false);
         extended_->reset(shared_->surface_.triangulation);
         take(newton_->solve(*extended_, target_, options, u), result);
         result.extended_precision = true;
         if (result.status == Status::converged) settle(*extended_, target_, options.tolerance, result);
     }
     if (result.status != Status::converged) {
-        result.message = fmt::format("residual {:.3g} after {} steps", result.residual_max, result.newton_iterations);
+        result.message =
+            fmt::format("residual {:.3g} after {} steps", result.residual_max, result.newton_iterations);
         return;
     }
     result.area_distortion = area_distortion_of_scaling(shared_->area_, shared_->mesh_.connectivity.tail, u);
@@ -203,13 +221,15 @@ void SweepWorker::solve_packing(SweepSolve& result, const SolveOptions& options)
     if (result.status == Status::converged) {
         result.area_distortion = area_distortion_of_areas(shared_->area_, packed_->face_areas());
     } else if (result.status != Status::inadmissible_target && !violated(u)) {
-        result.message = fmt::format("residual {:.3g} after {} steps", result.residual_max, result.newton_iterations);
+        result.message =
+            fmt::format("residual {:.3g} after {} steps", result.residual_max, result.newton_iterations);
     }
 }
 
 void SweepWorker::solve_densified(SweepSolve& result, const SolveOptions& options) {
     const Topology& topology = shared_->topology_;
-    // The thesis: no less than four times the genus. Obtuse packings (phi > 0) may need more: Theorem 4 tells.
+    // The thesis: no less than four times the genus. Obtuse packings (phi > 0) may need more: Theorem 4
+    // tells.
     const Index least = std::max(4 * topology.genus, 3 - 2 * topology.euler_characteristic);
     SweepOptions inner = shared_->options_;
     inner.densify = false;

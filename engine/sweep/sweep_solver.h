@@ -61,20 +61,23 @@ class SweepSurface {
     double cone_curvature_ = 0.0;
     std::string inadmissible_;
     std::vector<Index> candidates_;
-    std::vector<double> area_;                  // F, of the input
-    FlowSurface surface_;                       // vertex scaling
-    IntrinsicTriangulation<double> start_;      // rounded once for all
-    CurvatureTarget target_;                    // no cone yet
-    std::vector<Index> ordering_;               // fill-reducing, of the unknowns
-    std::optional<CirclePacking> packing_;      // circle packings
+    std::vector<double> area_;              // F, of the input
+    FlowSurface surface_;                   // vertex scaling
+    IntrinsicTriangulation<double> start_;  // rounded once for all
+    CurvatureTarget target_;                // no cone yet
+    std::vector<Index> ordering_;           // fill-reducing, of the unknowns
+    std::optional<CirclePacking> packing_;  // circle packings
 };
 
-/// Solves on one surface, one vertex after the other; one per thread. A solve's bits depend on its vertex alone.
+/// Solves on one surface, one vertex after the other; one per thread. A solve's bits depend on its vertex
+/// alone.
 class SweepWorker {
   public:
     explicit SweepWorker(std::shared_ptr<const SweepSurface> surface);
     ~SweepWorker();
 
+    /// `vertex`: one of the surface's candidates, else std::invalid_argument.
+    /// `vertex`: one of the surface's candidates (std::invalid_argument otherwise).
     SweepSolve solve(Index vertex, const std::function<std::optional<Status>()>& interrupted);
 
   private:

@@ -12,7 +12,9 @@ namespace {
 using Real = long double;
 constexpr Real kPi = std::numbers::pi_v<Real>;
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+std::size_t at(Index i) {
+    return static_cast<std::size_t>(i);
+}
 
 /// A face by corners and by edges: edge[k] joins corner[k] to corner[k+1].
 struct Face {
@@ -44,7 +46,8 @@ struct Complex {
 Real euclidean_angle(Real a, Real b, Real c) {
     const Real s = (a + b + c) / 2;
     // s - a and so on from differences of the inputs: b - a is exact where it matters.
-    const Real sa = (c + (b - a)) / 2, sb = (c - (b - a)) / 2, sc = b >= a ? (a - (c - b)) / 2 : (b - (c - a)) / 2;
+    const Real sa = (c + (b - a)) / 2, sb = (c - (b - a)) / 2,
+               sc = b >= a ? (a - (c - b)) / 2 : (b - (c - a)) / 2;
     return 2 * std::atan(std::sqrt(sb * sc / (s * sa)));
 }
 
@@ -157,7 +160,8 @@ class Flipper {
     }
 
   private:
-    /// Cosine of the angle opposite slot, which may lie outside [-1, 1] where Ptolemy lengths break the triangle.
+    /// Cosine of the angle opposite slot, which may lie outside [-1, 1] where Ptolemy lengths break the
+    /// triangle.
     [[nodiscard]] Real cosine_opposite(Edge::Place p) const {
         const auto k = at(p.slot);
         const Real c = scaled(p.face, k), a = scaled(p.face, (k + 1) % 3), b = scaled(p.face, (k + 2) % 3);
@@ -177,7 +181,8 @@ class Flipper {
         const auto pk = at(p.slot), qk = at(q.slot);
         const Face f = complex_->faces[at(p.face)], g = complex_->faces[at(q.face)];
         // p: i -> j, then j -> k, k -> i. q: j -> i, then i -> l, l -> j.
-        const Index i = f.corner[pk], j = f.corner[(pk + 1) % 3], k = f.corner[(pk + 2) % 3], l = g.corner[(qk + 2) % 3];
+        const Index i = f.corner[pk], j = f.corner[(pk + 1) % 3], k = f.corner[(pk + 2) % 3],
+                    l = g.corner[(qk + 2) % 3];
         const Index jk = f.edge[(pk + 1) % 3], ki = f.edge[(pk + 2) % 3], il = g.edge[(qk + 1) % 3],
                     lj = g.edge[(qk + 2) % 3];
         const auto length = [&](Index x) { return complex_->edges[at(x)].length; };
@@ -217,9 +222,10 @@ class Flipper {
 };
 
 /// Curvature per input vertex from angles[face][corner] and the full angle of each vertex of the complex.
-void fold(const Complex& complex, const SurfaceMesh& mesh, bool doubled, const std::vector<std::array<Real, 3>>& angles,
-          Recomputed& result) {
-    const std::vector<std::uint8_t> on_boundary = boundary_vertices(mesh.connectivity), used = used_vertices(mesh.connectivity);
+void fold(const Complex& complex, const SurfaceMesh& mesh, bool doubled,
+          const std::vector<std::array<Real, 3>>& angles, Recomputed& result) {
+    const std::vector<std::uint8_t> on_boundary = boundary_vertices(mesh.connectivity),
+                                    used = used_vertices(mesh.connectivity);
     std::vector<Real> sum(on_boundary.size(), 0);
     for (std::size_t s = 0; s < complex.original.size(); ++s) {
         const auto v = at(complex.original[s]);
@@ -238,7 +244,8 @@ void fold(const Complex& complex, const SurfaceMesh& mesh, bool doubled, const s
 Real triangle_area(Real a, Real b, Real c) {
     std::array<Real, 3> x{a, b, c};
     std::sort(x.begin(), x.end());
-    const Real p = (x[2] + (x[1] + x[0])) * (x[0] - (x[2] - x[1])) * (x[0] + (x[2] - x[1])) * (x[2] + (x[1] - x[0]));
+    const Real p =
+        (x[2] + (x[1] + x[0])) * (x[0] - (x[2] - x[1])) * (x[0] + (x[2] - x[1])) * (x[2] + (x[1] - x[0]));
     return std::sqrt(std::max(p, Real(0))) / 4;
 }
 
@@ -266,8 +273,8 @@ std::vector<Real> input_areas(const Complex& complex, std::size_t faces) {
 
 }  // namespace
 
-Recomputed recompute_scaling(const SurfaceMesh& mesh, std::span<const double> u, Geometry geometry, Boundary boundary,
-                             bool delaunay) {
+Recomputed recompute_scaling(const SurfaceMesh& mesh, std::span<const double> u, Geometry geometry,
+                             Boundary boundary, bool delaunay) {
     Recomputed result;
     const bool has_boundary = topology_of(mesh.connectivity).boundaries > 0;
     const bool doubled = has_boundary && boundary != Boundary::free;
@@ -292,15 +299,17 @@ Recomputed recompute_scaling(const SurfaceMesh& mesh, std::span<const double> u,
     std::vector<std::array<Real, 3>> angles(complex.faces.size());
     for (std::size_t f = 0; f < complex.faces.size(); ++f)
         for (std::size_t k = 0; k < 3; ++k) {
-            const auto length = [&](std::size_t slot) { return flipper.scaled(static_cast<Index>(f), slot % 3); };
+            const auto length = [&](std::size_t slot) {
+                return flipper.scaled(static_cast<Index>(f), slot % 3);
+            };
             angles[f][k] = angle(geometry, length(k + 1), length(k), length(k + 2));
         }
     fold(complex, mesh, doubled, angles, result);
     return result;
 }
 
-Recomputed recompute_packing(const SurfaceMesh& mesh, std::span<const double> eta, std::span<const double> eps,
-                             std::span<const double> u, Geometry geometry) {
+Recomputed recompute_packing(const SurfaceMesh& mesh, std::span<const double> eta,
+                             std::span<const double> eps, std::span<const double> u, Geometry geometry) {
     Recomputed result;
     const Complex complex = complex_of(mesh, false);
     const std::size_t faces = complex.faces.size();
@@ -309,7 +318,8 @@ Recomputed recompute_packing(const SurfaceMesh& mesh, std::span<const double> et
     const auto chord = [&](std::size_t h, Index i, Index j) {
         const Real ei = static_cast<Real>(eps[at(i)]) * std::exp(2 * static_cast<Real>(u[at(i)]));
         const Real ej = static_cast<Real>(eps[at(j)]) * std::exp(2 * static_cast<Real>(u[at(j)]));
-        const Real pair = static_cast<Real>(eta[h]) * std::exp(static_cast<Real>(u[at(i)]) + static_cast<Real>(u[at(j)]));
+        const Real pair =
+            static_cast<Real>(eta[h]) * std::exp(static_cast<Real>(u[at(i)]) + static_cast<Real>(u[at(j)]));
         if (geometry == Geometry::euclidean) return std::sqrt(2 * pair + ei + ej);
         // The length formulas as printed: cosh l and cos l.
         if (geometry == Geometry::hyperbolic) {
@@ -322,8 +332,10 @@ Recomputed recompute_packing(const SurfaceMesh& mesh, std::span<const double> et
     const std::vector<Real> areas = input_areas(complex, faces);
     for (std::size_t f = 0; f < faces; ++f) {
         std::array<Real, 3> l{};
-        for (std::size_t k = 0; k < 3; ++k) l[k] = chord(3 * f + k, complex.faces[f].corner[k], complex.faces[f].corner[(k + 1) % 3]);
-        for (std::size_t k = 0; k < 3; ++k) angles[f][k] = angle(geometry, l[(k + 1) % 3], l[k], l[(k + 2) % 3]);
+        for (std::size_t k = 0; k < 3; ++k)
+            l[k] = chord(3 * f + k, complex.faces[f].corner[k], complex.faces[f].corner[(k + 1) % 3]);
+        for (std::size_t k = 0; k < 3; ++k)
+            angles[f][k] = angle(geometry, l[(k + 1) % 3], l[k], l[(k + 2) % 3]);
         new_areas[f] = geometry == Geometry::euclidean
                            ? triangle_area(l[0], l[1], l[2])
                            : std::abs(kPi - angles[f][0] - angles[f][1] - angles[f][2]);

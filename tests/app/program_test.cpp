@@ -1,4 +1,6 @@
 // The program as a whole: exit status, what it writes, determinism, resuming, verification.
+#include "tests/support/program.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +11,6 @@
 
 #include "io/mesh/mesh_file.h"
 #include "io/store/run_store.h"
-#include "tests/support/program.h"
 #include "tests/support/test_data.h"
 
 namespace ricci {
@@ -24,7 +25,8 @@ using Words = std::vector<std::string>;
 
 std::string make(const TemporaryFolder& folder, const std::string& name, int faces) {
     const std::string file = folder / (name + ".off");
-    EXPECT_EQ(run_ricci(folder, {"generate", name, "--faces", std::to_string(faces), "-o", file, "-q"}).status, 0);
+    EXPECT_EQ(
+        run_ricci(folder, {"generate", name, "--faces", std::to_string(faces), "-o", file, "-q"}).status, 0);
     return file;
 }
 
@@ -35,7 +37,9 @@ std::vector<nlohmann::json> objects(const std::string& text) {
     return result;
 }
 
-bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+bool same_bits(double a, double b) {
+    return std::memcmp(&a, &b, sizeof a) == 0;
+}
 
 /// Everything but seconds, bit for bit.
 void expect_same(const StoredRun& a, const StoredRun& b) {
@@ -52,13 +56,16 @@ void expect_same(const StoredRun& a, const StoredRun& b) {
             EXPECT_EQ(x.rows[k].status, y.rows[k].status);
             EXPECT_EQ(x.rows[k].flips, y.rows[k].flips);
             EXPECT_EQ(x.rows[k].newton_iterations, y.rows[k].newton_iterations);
-            EXPECT_TRUE(same_bits(x.rows[k].area_distortion, y.rows[k].area_distortion)) << "vertex " << x.rows[k].vertex;
-            EXPECT_TRUE(same_bits(x.rows[k].residual_max, y.rows[k].residual_max)) << "vertex " << x.rows[k].vertex;
+            EXPECT_TRUE(same_bits(x.rows[k].area_distortion, y.rows[k].area_distortion))
+                << "vertex " << x.rows[k].vertex;
+            EXPECT_TRUE(same_bits(x.rows[k].residual_max, y.rows[k].residual_max))
+                << "vertex " << x.rows[k].vertex;
         }
         EXPECT_EQ(x.best, y.best);
         EXPECT_EQ(x.worst, y.worst);
         ASSERT_EQ(x.kept.size(), y.kept.size());
-        for (std::size_t k = 0; k < x.kept.size(); ++k) EXPECT_EQ(x.kept[k].conformal_factor, y.kept[k].conformal_factor);
+        for (std::size_t k = 0; k < x.kept.size(); ++k)
+            EXPECT_EQ(x.kept[k].conformal_factor, y.kept[k].conformal_factor);
     }
     EXPECT_EQ(a.failures.size(), b.failures.size());
 }
@@ -74,7 +81,8 @@ TEST(Program, ExitStatusTellsUsageFromEnvironment) {
     const std::string mesh = make(folder, "eight", 400);
     EXPECT_EQ(run_ricci(folder, {"flow", mesh, "--cone=999999:-4pi"}).status, 2);
     EXPECT_EQ(run_ricci(folder, {"flow", mesh, "--scheme", "nonsense"}).status, 2);
-    EXPECT_EQ(run_ricci(folder, {"sweep", mesh, "--vertices", "sample:2", "-o", "/proc/none/x.h5"}).status, 3);
+    EXPECT_EQ(run_ricci(folder, {"sweep", mesh, "--vertices", "sample:2", "-o", "/proc/none/x.h5"}).status,
+              3);
     for (const char* command : {"info", "generate", "flow", "sweep", "verify", "export"}) {
         const ProgramResult help = run_ricci(folder, {command, "--help"});
         EXPECT_EQ(help.status, 0) << command;
@@ -86,8 +94,9 @@ TEST(Program, SweepIsTheSameForAnyThreadsAndVerifies) {
     const TemporaryFolder folder;
     const std::string mesh = make(folder, "eight", 800);
     const auto sweep = [&](const std::string& out, const char* threads) {
-        const ProgramResult r = run_ricci(folder, {"sweep", mesh, "--vertices", "sample:60:4", "--resolutions", "input,600", "--keep", "4",
-                                                   "--threads", threads, "-o", folder / out});
+        const ProgramResult r =
+            run_ricci(folder, {"sweep", mesh, "--vertices", "sample:60:4", "--resolutions", "input,600",
+                               "--keep", "4", "--threads", threads, "-o", folder / out});
         EXPECT_EQ(r.status, 0) << r.err;
     };
     sweep("one.h5", "1");
@@ -100,7 +109,8 @@ TEST(Program, SweepIsTheSameForAnyThreadsAndVerifies) {
     expect_same(one, read_run(folder / "three.h5"));
     const ProgramResult verified = run_ricci(folder, {"verify", folder / "one.h5", "--recompute", "--json"});
     EXPECT_EQ(verified.status, 0) << verified.err;
-    EXPECT_EQ(objects(verified.out).at(0)["recomputed"].size(), 12U) << "best, worst and four others of two items";
+    EXPECT_EQ(objects(verified.out).at(0)["recomputed"].size(), 12U)
+        << "best, worst and four others of two items";
     EXPECT_EQ(run_ricci(folder, {"export", folder / "one.h5", "-o", folder / "one.csv"}).status, 0);
     EXPECT_EQ(run_ricci(folder, {"export", folder / "one.h5", "-o", folder / "one.vtu"}).status, 0);
     EXPECT_NE(read_text(folder / "one.csv").find("area_distortion"), std::string::npos);
@@ -115,7 +125,9 @@ TEST(Program, KilledAtRandomMomentsAndResumedEqualsUndisturbed) {
     killed.push_back(folder / "killed.h5");
     const auto start = std::chrono::steady_clock::now();
     EXPECT_EQ(run_ricci(folder, plain).status, 1) << "the torus admits no single cone";
-    const auto whole = std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - start).count();
+    const auto whole =
+        std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - start)
+            .count();
     killed.emplace_back("--resume");
     std::mt19937 random(7);
     int kills = 0;
@@ -153,8 +165,9 @@ TEST(Program, ABadItemDoesNotStopTheBatch) {
     write_text(folder / "broken.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 9\n");
     // Two components: each an item; a sphere admits no cone, which is recorded.
     const std::string sphere = make(folder, "sphere", 80);
-    const ProgramResult r = run_ricci(folder, {"sweep", folder / "broken.off", mesh, folder / "missing.obj", sphere, mesh,
-                                               "--vertices", "sample:3", "--json", "-o", folder / "out.h5"});
+    const ProgramResult r =
+        run_ricci(folder, {"sweep", folder / "broken.off", mesh, folder / "missing.obj", sphere, mesh,
+                           "--vertices", "sample:3", "--json", "-o", folder / "out.h5"});
     EXPECT_EQ(r.status, 1);
     const auto lines = objects(r.out);
     ASSERT_EQ(lines.size(), 5U);
@@ -175,7 +188,8 @@ TEST(Program, ComponentsBecomeItems) {
     write_text(folder / "two.off",
                "OFF\n8 8 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n5 0 0\n6 0 0\n5 1 0\n5 0 2\n"
                "3 4 6 5\n3 4 5 7\n3 5 6 7\n3 6 4 7\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n");
-    const ProgramResult r = run_ricci(folder, {"flow", folder / "two.off", "--target", "uniform", "--json", "-o", folder / "o.h5"});
+    const ProgramResult r = run_ricci(
+        folder, {"flow", folder / "two.off", "--target", "uniform", "--json", "-o", folder / "o.h5"});
     EXPECT_EQ(r.status, 0) << r.err;
     const auto lines = objects(r.out);
     ASSERT_EQ(lines.size(), 2U);
@@ -190,7 +204,8 @@ TEST(Program, ComponentsBecomeItems) {
 TEST(Program, RecomputeFindsAFalseSolution) {
     const TemporaryFolder folder;
     const std::string mesh = make(folder, "eight", 400);
-    ASSERT_EQ(run_ricci(folder, {"sweep", mesh, "--vertices", "sample:4", "-o", folder / "good.h5"}).status, 0);
+    ASSERT_EQ(run_ricci(folder, {"sweep", mesh, "--vertices", "sample:4", "-o", folder / "good.h5"}).status,
+              0);
     StoredRun run = read_run(folder / "good.h5");
     run.info.fingerprint = "forged";
     StoredItem& item = run.items.at(0);
@@ -217,11 +232,12 @@ TEST(Program, RecomputeFindsAFalseSolution) {
 
 TEST(Program, FlowRecordsVerifyForEveryGeometrySchemeAndBoundary) {
     const TemporaryFolder folder;
-    const std::string eight = make(folder, "eight", 400), torus = make(folder, "torus", 300), disk = make(folder, "disk", 200),
-                      pants = make(folder, "pants", 400);
+    const std::string eight = make(folder, "eight", 400), torus = make(folder, "torus", 300),
+                      disk = make(folder, "disk", 200), pants = make(folder, "pants", 400);
     const SurfaceMesh surface = load_mesh(pants).components.at(0);
     const std::vector<std::uint8_t> on_boundary = boundary_vertices(surface.connectivity);
-    const auto interior = std::find(on_boundary.begin(), on_boundary.end(), std::uint8_t{0}) - on_boundary.begin();
+    const auto interior =
+        std::find(on_boundary.begin(), on_boundary.end(), std::uint8_t{0}) - on_boundary.begin();
     const std::vector<Words> runs{{eight},
                                   {eight, "--target", "uniform"},
                                   {eight, "--cone=3:-4pi"},
@@ -251,7 +267,8 @@ TEST(Program, FlowRecordsVerifyForEveryGeometrySchemeAndBoundary) {
 TEST(Program, DryRunWritesNothing) {
     const TemporaryFolder folder;
     const std::string mesh = make(folder, "eight", 400);
-    const ProgramResult r = run_ricci(folder, {"sweep", mesh, "--dry-run", "--json", "-o", folder / "out.h5"});
+    const ProgramResult r =
+        run_ricci(folder, {"sweep", mesh, "--dry-run", "--json", "-o", folder / "out.h5"});
     EXPECT_EQ(r.status, 0) << r.err;
     EXPECT_GT(objects(r.out).at(0)["estimated_megabytes"].get<double>(), 0.0);
     EXPECT_FALSE(std::filesystem::exists(folder / "out.h5"));
@@ -263,7 +280,10 @@ TEST(Program, ShardsCoverEveryVertexOnce) {
     const std::string mesh = make(folder, "eight", 400);
     std::vector<Index> seen;
     for (const char* shard : {"0/3", "1/3", "2/3"}) {
-        ASSERT_EQ(run_ricci(folder, {"sweep", mesh, "--vertices", "sample:20", "--shard", shard, "-o", folder / "s.h5"}).status, 0);
+        ASSERT_EQ(run_ricci(folder, {"sweep", mesh, "--vertices", "sample:20", "--shard", shard, "-o",
+                                     folder / "s.h5"})
+                      .status,
+                  0);
         const StoredRun run = read_run(folder / "s.h5");
         for (const SweepRow& row : run.items.at(0).sweep->rows) seen.push_back(row.vertex);
     }

@@ -85,9 +85,11 @@ TEST(SweepConfig, ResolvedTextReadsBack) {
 }
 
 TEST(SweepConfig, NamesFileLineAndKeyOfAMistake) {
-    EXPECT_NE(complaint("[solve]\ntolerence = 1e-10\n").find("c.toml:2: unknown key 'tolerence' in [solve]"), std::string::npos);
+    EXPECT_NE(complaint("[solve]\ntolerence = 1e-10\n").find("c.toml:2: unknown key 'tolerence' in [solve]"),
+              std::string::npos);
     EXPECT_NE(complaint("[solving]\n").find("unknown table or key 'solving'"), std::string::npos);
-    EXPECT_NE(complaint("[solve]\ntolerance = \"small\"\n").find("'tolerance' must be a number"), std::string::npos);
+    EXPECT_NE(complaint("[solve]\ntolerance = \"small\"\n").find("'tolerance' must be a number"),
+              std::string::npos);
     EXPECT_NE(complaint("[solve]\ndensify = 1\n").find("'densify' must be true or false"), std::string::npos);
     EXPECT_NE(complaint("solve = 3\n").find("must be a table"), std::string::npos);
     EXPECT_NE(complaint("[solve\n").find("c.toml:1"), std::string::npos);
@@ -108,7 +110,8 @@ TEST(Curvature, ParsesMultiplesOfPi) {
 
 TEST(Cone, NeedsVertexAndCurvature) {
     EXPECT_EQ(parse_cone("17:-2pi").vertex, 17);
-    for (const char* wrong : {"17", ":pi", "-1:pi", "x:pi", "1.5:pi", "3:"}) EXPECT_THROW(parse_cone(wrong), UsageError) << wrong;
+    for (const char* wrong : {"17", ":pi", "-1:pi", "x:pi", "1.5:pi", "3:"})
+        EXPECT_THROW(parse_cone(wrong), UsageError) << wrong;
 }
 
 TEST(VertexChoice, SamplesAndLists) {
@@ -116,7 +119,8 @@ TEST(VertexChoice, SamplesAndLists) {
     EXPECT_EQ(choose_vertices(parse_vertices("all"), candidates), candidates);
     EXPECT_EQ(choose_vertices(parse_vertices("sample:100"), candidates), candidates);
     EXPECT_EQ(choose_vertices(parse_vertices("sample:3:9"), candidates).size(), 3U);
-    EXPECT_EQ(choose_vertices(parse_vertices("sample:3:9"), candidates), choose_vertices(parse_vertices("sample:3:9"), candidates));
+    EXPECT_EQ(choose_vertices(parse_vertices("sample:3:9"), candidates),
+              choose_vertices(parse_vertices("sample:3:9"), candidates));
     const TemporaryFolder folder;
     write_text(folder / "v.txt", "7 # comment\n\n3\n7\n");
     EXPECT_EQ(choose_vertices(parse_vertices(folder / "v.txt"), candidates), (std::vector<Index>{3, 7}));

@@ -1,5 +1,6 @@
-// Theorem 4 of the thesis: which curvatures a circle packing on a fixed triangulation can have. The bound is computed
-// here from its definition, for every subset of a small mesh, and compared with what the flow does and says.
+// Theorem 4 of the thesis: which curvatures a circle packing on a fixed triangulation can have. The bound is
+// computed here from its definition, for every subset of a small mesh, and compared with what the flow does
+// and says.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +22,8 @@ using std::numbers::pi;
 using testing::at;
 using testing::Random;
 
-/// -sum over Lk(I) of (pi - phi(e)) + 2 pi chi(F_I), straight from the theorem; I as a bit mask, closed surface.
+/// -sum over Lk(I) of (pi - phi(e)) + 2 pi chi(F_I), straight from the theorem; I as a bit mask, closed
+/// surface.
 double bound_of(const Connectivity& c, const std::vector<double>& eta, unsigned set) {
     const auto in = [&](Index v) { return (set >> v & 1U) != 0; };
     int vertices = std::popcount(set), edges = 0, faces = 0;
@@ -32,7 +34,8 @@ double bound_of(const Connectivity& c, const std::vector<double>& eta, unsigned 
         if (ends && c.twin[at(h)] > h) ++edges;
         if (ends && in(apex) && h % 3 == 0) ++faces;
         // The edge of h with the vertex opposite: in the link when the edge has no end in I.
-        if (!in(c.tail[at(h)]) && !in(c.head(h)) && in(apex)) link += pi - std::acos(std::min(eta[at(h)], 1.0));
+        if (!in(c.tail[at(h)]) && !in(c.head(h)) && in(apex))
+            link += pi - std::acos(std::min(eta[at(h)], 1.0));
     }
     return -link + 2 * pi * (vertices - edges + faces);
 }
@@ -49,7 +52,8 @@ struct Margin {
     double value = 1e9;
     unsigned set = 0;
 };
-Margin margin_of(const Connectivity& c, const std::vector<double>& eta, const std::vector<double>& curvature) {
+Margin margin_of(const Connectivity& c, const std::vector<double>& eta,
+                 const std::vector<double>& curvature) {
     Margin margin;
     const unsigned all = (1U << c.vertex_count) - 1;
     for (unsigned set = 1; set < all; ++set) {
@@ -59,7 +63,9 @@ Margin margin_of(const Connectivity& c, const std::vector<double>& eta, const st
     return margin;
 }
 
-SurfaceMesh tiny_torus() { return testing::bumpy_torus(3, 3); }
+SurfaceMesh tiny_torus() {
+    return testing::bumpy_torus(3, 3);
+}
 
 FlowOptions tangential(const std::vector<double>& curvature) {
     FlowOptions options;
@@ -71,8 +77,10 @@ FlowOptions tangential(const std::vector<double>& curvature) {
     return options;
 }
 
-/// Random curvatures below 2 pi with the right sum, in which a random set gets about what the theorem lets it have.
-std::vector<double> random_curvature(const SurfaceMesh& mesh, const std::vector<double>& eta, Random& random) {
+/// Random curvatures below 2 pi with the right sum, in which a random set gets about what the theorem lets it
+/// have.
+std::vector<double> random_curvature(const SurfaceMesh& mesh, const std::vector<double>& eta,
+                                     Random& random) {
     const Connectivity& c = mesh.connectivity;
     const auto n = at(c.vertex_count);
     const double total = 2 * pi * topology_of(c).euler_characteristic;
@@ -83,8 +91,9 @@ std::vector<double> random_curvature(const SurfaceMesh& mesh, const std::vector<
         std::vector<double> k = random.uniforms(n, -0.5, 0.5);
         const double noise_inside = sum_over(k, set), noise = sum_over(k, (1U << n) - 1);
         for (std::size_t v = 0; v < n; ++v)
-            k[v] += (set >> v & 1U) != 0 ? (inside - noise_inside) / size
-                                         : (total - inside - noise + noise_inside) / (static_cast<double>(n) - size);
+            k[v] += (set >> v & 1U) != 0
+                        ? (inside - noise_inside) / size
+                        : (total - inside - noise + noise_inside) / (static_cast<double>(n) - size);
         if (*std::max_element(k.begin(), k.end()) < 2 * pi - 0.05) return k;
     }
 }
@@ -95,7 +104,8 @@ unsigned mask_of(const std::vector<Index>& vertices) {
     return set;
 }
 
-/// The flow converges exactly where brute force says admissible, and a violation it names is one, with the right bound.
+/// The flow converges exactly where brute force says admissible, and a violation it names is one, with the
+/// right bound.
 void expect_flow_obeys_the_theorem(const SurfaceMesh& mesh, Random& random, int trials) {
     int admissible = 0, inadmissible = 0, by_sets = 0;
     const std::vector<double> eta(mesh.edge_length.size(), 1.0);
@@ -113,7 +123,8 @@ void expect_flow_obeys_the_theorem(const SurfaceMesh& mesh, Random& random, int 
             continue;
         }
         ++inadmissible;
-        EXPECT_EQ(result.outcome.status, Status::inadmissible_target) << "margin " << margin.value << ", " << result.message;
+        EXPECT_EQ(result.outcome.status, Status::inadmissible_target)
+            << "margin " << margin.value << ", " << result.message;
         CurvatureTarget target;
         target.curvature = k;
         for (Index v = 0; v < mesh.connectivity.vertex_count; ++v) target.unknown.push_back(v);
@@ -155,7 +166,8 @@ TEST(Admissibility, ASingleVertexIsFoundBeforeTheFlow) {
 }
 
 TEST(Admissibility, ALargerSetIsFoundByTheFlow) {
-    // I = {0, 2, 4}, a face: the bound is 2 pi (3 - 3 + 1) - 6 ... counted by brute force; each vertex alone is fine.
+    // I = {0, 2, 4}, a face: the bound is 2 pi (3 - 3 + 1) - 6 ... counted by brute force; each vertex alone
+    // is fine.
     const SurfaceMesh mesh = testing::octahedron();
     const std::vector<double> eta(24, 1.0);
     const unsigned set = 1U << 0 | 1U << 2 | 1U << 4;
@@ -184,7 +196,8 @@ TEST(Admissibility, BoundsOfRandomSetsWithRandomAnglesAreExact) {
             std::vector<double> eta(mesh.edge_length.size());
             for (Index h = 0; h < c.halfedge_count(); ++h)
                 eta[at(h)] = c.twin[at(h)] > h ? random.uniform(0, 1.2) : eta[at(c.twin[at(h)])];
-            // Levels that single out a random set, whose curvature is far too low while every vertex alone is admissible.
+            // Levels that single out a random set, whose curvature is far too low while every vertex alone is
+            // admissible.
             const auto set = static_cast<unsigned>(random.below(std::uint64_t{1} << c.vertex_count));
             if (std::popcount(set) < 2 || std::popcount(set) >= c.vertex_count) continue;
             CurvatureTarget target;

@@ -21,7 +21,8 @@ double by_definition(const std::vector<double>& area, const std::vector<long dou
     for (const double a : area) before += a;
     for (const long double l : log_new) after += std::exp(l);
     for (std::size_t f = 0; f < area.size(); ++f) {
-        const long double d = std::log(static_cast<long double>(area[f]) / before) - (log_new[f] - std::log(after));
+        const long double d =
+            std::log(static_cast<long double>(area[f]) / before) - (log_new[f] - std::log(after));
         sum += d * d;
     }
     return static_cast<double>(sum / static_cast<long double>(area.size()));
@@ -38,7 +39,9 @@ TEST(AreaDistortion, FollowsItsDefinition) {
         std::vector<long double> log_new(area.size());
         for (std::size_t f = 0; f < area.size(); ++f)
             log_new[f] = std::log(static_cast<long double>(area[f])) +
-                         2.0L / 3 * (static_cast<long double>(u[at(tail[3 * f])]) + u[at(tail[3 * f + 1])] + u[at(tail[3 * f + 2])]);
+                         2.0L / 3 *
+                             (static_cast<long double>(u[at(tail[3 * f])]) + u[at(tail[3 * f + 1])] +
+                              u[at(tail[3 * f + 2])]);
         const double expected = by_definition(area, log_new);
         EXPECT_NEAR(area_distortion_of_scaling(area, tail, u) / expected, 1.0, 1e-13) << spread;
         std::vector<double> shifted = u;
@@ -64,7 +67,8 @@ TEST(AreaDistortion, IsZeroExactlyForSimilarities) {
     EXPECT_GT(area_distortion_of_scaling(area, mesh.connectivity.tail, u), 1e-4);
     // Two faces, one doubled: log ratios 0 and log 2 against log 3/2.
     const double expected = (std::pow(std::log(1.5), 2) + std::pow(std::log(2.0 / 1.5), 2)) / 2;
-    EXPECT_NEAR(area_distortion_of_areas(std::vector<double>{1, 1}, std::vector<double>{1, 2}), expected, 1e-15);
+    EXPECT_NEAR(area_distortion_of_areas(std::vector<double>{1, 1}, std::vector<double>{1, 2}), expected,
+                1e-15);
 }
 
 }  // namespace

@@ -27,7 +27,9 @@ std::vector<double> angle_sums(const SurfaceMesh& mesh) {
     const auto t = intrinsic_triangulation<double>(mesh);
     std::vector<double> angle(t.log_chord.size()), total(at(mesh.connectivity.vertex_count));
     const std::vector<double> u(total.size(), 0.0);
-    EXPECT_EQ(evaluate_faces<double>(Geometry::euclidean, {t.connectivity.tail, t.log_chord, u}, {angle, {}, {}, {}}, false), 0);
+    EXPECT_EQ(evaluate_faces<double>(Geometry::euclidean, {t.connectivity.tail, t.log_chord, u},
+                                     {angle, {}, {}, {}}, false),
+              0);
     sum_corners<double>(t.connectivity.tail, angle, total);
     return total;
 }
@@ -39,7 +41,8 @@ Index valence_of(const SurfaceMesh& mesh, Index vertex) {
 }
 
 TEST(Densify, KeepsTheSurfaceAndRaisesTheValence) {
-    for (const SurfaceMesh& mesh : {testing::bumpy_torus(6, 5), testing::icosahedron(0.2), testing::wavy_square(4, 0.2), testing::octahedron()}) {
+    for (const SurfaceMesh& mesh : {testing::bumpy_torus(6, 5), testing::icosahedron(0.2),
+                                    testing::wavy_square(4, 0.2), testing::octahedron()}) {
         const auto before = angle_sums(mesh);
         const auto boundary = boundary_vertices(mesh.connectivity);
         for (const Index vertex : {Index{2}, mesh.connectivity.vertex_count / 2}) {
@@ -48,14 +51,15 @@ TEST(Densify, KeepsTheSurfaceAndRaisesTheValence) {
                 for (const int levels : {0, 1, 2}) {
                     const DensifiedMesh dense = densify_around(mesh, vertex, valence, 2, levels);
                     EXPECT_STREQ(check_connectivity(dense.mesh.connectivity), "");
-                    const Topology a = topology_of(mesh.connectivity), b = topology_of(dense.mesh.connectivity);
+                    const Topology a = topology_of(mesh.connectivity),
+                                   b = topology_of(dense.mesh.connectivity);
                     EXPECT_EQ(a.genus, b.genus);
                     EXPECT_EQ(a.boundaries, b.boundaries);
                     EXPECT_EQ(dense.valence, valence_of(dense.mesh, vertex));
                     EXPECT_GE(dense.valence, std::max(valence, valence_of(mesh, vertex)));
                     EXPECT_NEAR(testing::total_area(dense.mesh) / testing::total_area(mesh), 1.0, 1e-13);
-                    // Old vertices where they were, with their angles; new ones flat (pi on the boundary). Angles of the thin
-                    // triangles around the vertex, above 0.01, lose 1e-16 / 0.01 each.
+                    // Old vertices where they were, with their angles; new ones flat (pi on the boundary).
+                    // Angles of the thin triangles around the vertex, above 0.01, lose 1e-16 / 0.01 each.
                     const auto after = angle_sums(dense.mesh);
                     const auto on_boundary = boundary_vertices(dense.mesh.connectivity);
                     for (std::size_t v = 0; v < after.size(); ++v) {

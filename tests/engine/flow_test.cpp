@@ -1,4 +1,5 @@
-// Whole solves: manufactured targets, boundaries, uniformization, and surfaces whose metric is known in closed form.
+// Whole solves: manufactured targets, boundaries, uniformization, and surfaces whose metric is known in
+// closed form.
 #include "engine/flow/flow.h"
 
 #include <gtest/gtest.h>
@@ -50,7 +51,8 @@ void expect_converged(const FlowResult& result, const std::string& what) {
 }
 
 /// Flows to K(u0) of random u0 and expects u0.
-void expect_recovers(const SurfaceMesh& mesh, Geometry geometry, Boundary boundary, double spread, Random& random) {
+void expect_recovers(const SurfaceMesh& mesh, Geometry geometry, Boundary boundary, double spread,
+                     Random& random) {
     const std::string what = std::string(name_of(geometry)) + ", " + std::string(name_of(boundary));
     const FlowSurface surface = make_flow_surface(mesh, boundary != Boundary::free, true);
     ScaledMetric<double> metric(surface, geometry, false);
@@ -86,25 +88,31 @@ TEST(Flow, RecoversManufacturedMetrics) {
             expect_recovers(made("annulus-planar", 100, 0.2), geometry, Boundary::curvature, 0.5, random);
         }
         // Not convex: from nearby only.
-        expect_recovers(scaled(testing::bumpy_torus(7, 6), 0.1), Geometry::spherical, Boundary::geodesic, 0.03, random);
-        expect_recovers(scaled(testing::wavy_square(6, 0.1), 0.5), Geometry::spherical, Boundary::curvature, 0.03, random);
-        expect_recovers(scaled(testing::wavy_square(6, 0.1), 0.5), Geometry::spherical, Boundary::free, 0.03, random);
+        expect_recovers(scaled(testing::bumpy_torus(7, 6), 0.1), Geometry::spherical, Boundary::geodesic,
+                        0.03, random);
+        expect_recovers(scaled(testing::wavy_square(6, 0.1), 0.5), Geometry::spherical, Boundary::curvature,
+                        0.03, random);
+        expect_recovers(scaled(testing::wavy_square(6, 0.1), 0.5), Geometry::spherical, Boundary::free, 0.03,
+                        random);
     }
 }
 
 TEST(Flow, RecoversManufacturedPackings) {
     // In the plane the packing does not depend on the target, so that K(u0) can be made beforehand.
     Random random(2);
-    for (const Scheme scheme : {Scheme::inversive_distance, Scheme::thurston, Scheme::tangential, Scheme::virtual_radius})
+    for (const Scheme scheme :
+         {Scheme::inversive_distance, Scheme::thurston, Scheme::tangential, Scheme::virtual_radius})
         for (const bool closed : {true, false})
             for (const Boundary boundary : {Boundary::curvature, Boundary::free}) {
                 const SurfaceMesh mesh = closed ? testing::bumpy_torus(7, 6) : testing::wavy_square(6, 0.1);
                 const FlowSurface surface = make_flow_surface(mesh, false, false);
-                const CirclePacking packing = initial_circle_packing(mesh.connectivity, mesh.edge_length, Geometry::euclidean, scheme);
+                const CirclePacking packing =
+                    initial_circle_packing(mesh.connectivity, mesh.edge_length, Geometry::euclidean, scheme);
                 PackedMetric metric(surface, packing, Geometry::euclidean, false);
                 std::vector<double> goal = packing.u;
                 for (std::size_t v = 0; v < goal.size(); ++v)
-                    if (boundary != Boundary::free || !surface.boundary[v]) goal[v] += random.uniform(-0.02, 0.02);
+                    if (boundary != Boundary::free || !surface.boundary[v])
+                        goal[v] += random.uniform(-0.02, 0.02);
                 FlowOptions options;
                 options.geometry = Geometry::euclidean;
                 options.scheme = scheme;
@@ -124,8 +132,8 @@ TEST(Flow, RecoversManufacturedPackings) {
 }
 
 TEST(Flow, AnnulusBecomesAFlatCylinderWithItsModulus) {
-    // Similar triangles of a plane annulus unroll to a cylinder whose rows are all alike: u is constant along circles
-    // and linear across, -log r. The target: flat inside, straight boundaries.
+    // Similar triangles of a plane annulus unroll to a cylinder whose rows are all alike: u is constant along
+    // circles and linear across, -log r. The target: flat inside, straight boundaries.
     GenerateOptions annulus;
     annulus.faces = 400;
     const SurfaceMesh mesh = generate("annulus-planar", annulus);
@@ -135,9 +143,11 @@ TEST(Flow, AnnulusBecomesAFlatCylinderWithItsModulus) {
     EXPECT_EQ(result.boundary, Boundary::curvature);
     expect_converged(result, "annulus");
     double mean = 0.0;
-    for (const Point& p : mesh.points) mean -= std::log(std::hypot(p[0], p[1])) / static_cast<double>(mesh.points.size());
+    for (const Point& p : mesh.points)
+        mean -= std::log(std::hypot(p[0], p[1])) / static_cast<double>(mesh.points.size());
     for (std::size_t v = 0; v < mesh.points.size(); ++v)
-        EXPECT_NEAR(result.conformal_factor[v], -std::log(std::hypot(mesh.points[v][0], mesh.points[v][1])) - mean, 1e-9);
+        EXPECT_NEAR(result.conformal_factor[v],
+                    -std::log(std::hypot(mesh.points[v][0], mesh.points[v][1])) - mean, 1e-9);
     // Geodesic boundaries say the same.
     options.target = TargetKind::flat;
     options.geometry = Geometry::euclidean;
@@ -161,7 +171,8 @@ TEST(Flow, DiskWithBoundaryTargetIsSymmetricUnderTurnsOfSixty) {
     // Ring k holds 6k vertices, six sectors of k: vertex 1 + 3k(k-1) + i.
     for (Index k = 1, first = 1; first + 6 * k <= mesh.connectivity.vertex_count; first += 6 * k, ++k)
         for (Index i = 0; i < 6 * k; ++i)
-            EXPECT_NEAR(result.conformal_factor[at(first + i)], result.conformal_factor[at(first + (i + k) % (6 * k))], 1e-9);
+            EXPECT_NEAR(result.conformal_factor[at(first + i)],
+                        result.conformal_factor[at(first + (i + k) % (6 * k))], 1e-9);
 }
 
 TEST(Flow, FreeBoundaryKeepsItsLengths) {
@@ -238,8 +249,12 @@ void expect_equilateral(const std::string& name, int valence) {
     EXPECT_GT(std::abs(finer.conformal_factor[0] - finer.conformal_factor[at(old)]), 0.01);
 }
 
-TEST(Flow, KleinQuarticIsMadeOfEquilateralTriangles) { expect_equilateral("klein-quartic", 7); }
-TEST(Flow, BolzaIsMadeOfEquilateralTriangles) { expect_equilateral("bolza", 8); }
+TEST(Flow, KleinQuarticIsMadeOfEquilateralTriangles) {
+    expect_equilateral("klein-quartic", 7);
+}
+TEST(Flow, BolzaIsMadeOfEquilateralTriangles) {
+    expect_equilateral("bolza", 8);
+}
 
 TEST(Flow, UniformTargetOnASphere) {
     const SurfaceMesh mesh = made("ellipsoid", 500, 0.2);
@@ -260,7 +275,8 @@ TEST(Flow, ConesAnywhereOnGenusTwo) {
         EXPECT_EQ(result.geometry, Geometry::euclidean);
         expect_converged(result, "cone");
         EXPECT_GT(result.outcome.flips, 0);
-        EXPECT_NEAR(std::accumulate(result.conformal_factor.begin(), result.conformal_factor.end(), 0.0), 0.0, 1e-8);
+        EXPECT_NEAR(std::accumulate(result.conformal_factor.begin(), result.conformal_factor.end(), 0.0), 0.0,
+                    1e-8);
     }
 }
 
@@ -274,7 +290,8 @@ TEST(Flow, GradientMethodAgreesWithNewton) {
     expect_converged(newton, "newton");
     expect_converged(gradient, "gradient");
     EXPECT_GT(gradient.outcome.iterations, newton.outcome.iterations);
-    for (std::size_t v = 0; v < 42; ++v) EXPECT_NEAR(newton.conformal_factor[v], gradient.conformal_factor[v], 4e-9);
+    for (std::size_t v = 0; v < 42; ++v)
+        EXPECT_NEAR(newton.conformal_factor[v], gradient.conformal_factor[v], 4e-9);
 }
 
 TEST(Flow, InadmissibleTargetsAreAStatusWithAReason) {
@@ -294,7 +311,8 @@ TEST(Flow, InadmissibleTargetsAreAStatusWithAReason) {
         EXPECT_NE(result.message.find("vertex 3"), std::string::npos) << result.message;
         options.geometry = Geometry::hyperbolic;
         options.cones.clear();
-        EXPECT_EQ(solve_flow(mesh, options).outcome.status, Status::inadmissible_target) << "a flat torus is not hyperbolic";
+        EXPECT_EQ(solve_flow(mesh, options).outcome.status, Status::inadmissible_target)
+            << "a flat torus is not hyperbolic";
     }
     FlowOptions options;
     options.cones = {{25, 0.0}};

@@ -54,7 +54,8 @@ void expect_matches_differences(Metric& metric, const std::vector<double>& u, co
     const Eigen::MatrixXd differences = testing::difference_jacobian(metric, u, step);
     // step^2 times third derivatives of up to 1e3, and 1e-14/step.
     EXPECT_LT((exact - differences).cwiseAbs().maxCoeff(), 3e-7 * (1 + exact.cwiseAbs().maxCoeff())) << what;
-    EXPECT_LT((differences - differences.transpose()).cwiseAbs().maxCoeff(), 3e-7 * (1 + exact.cwiseAbs().maxCoeff()))
+    EXPECT_LT((differences - differences.transpose()).cwiseAbs().maxCoeff(),
+              3e-7 * (1 + exact.cwiseAbs().maxCoeff()))
         << what << ": the differences themselves are symmetric";
 }
 
@@ -62,11 +63,13 @@ TEST(Hessian, VertexScalingAgreesWithDifferences) {
     Random random(1);
     for (const Geometry geometry : kGeometries)
         for (const bool doubled : {false, true}) {
-            for (const SurfaceMesh& mesh : {scaled(testing::bumpy_torus(6, 5), 0.1), scaled(testing::wavy_square(4, 0.2), 0.5)}) {
+            for (const SurfaceMesh& mesh :
+                 {scaled(testing::bumpy_torus(6, 5), 0.1), scaled(testing::wavy_square(4, 0.2), 0.5)}) {
                 const FlowSurface surface = make_flow_surface(mesh, doubled, true);
                 ScaledMetric<double> metric(surface, geometry, false);
                 const auto u = random.uniforms(at(surface.vertex_count()), -0.3, 0.3);
-                expect_matches_differences(metric, u, std::string(name_of(geometry)) + (doubled ? ", doubled" : ""));
+                expect_matches_differences(metric, u,
+                                           std::string(name_of(geometry)) + (doubled ? ", doubled" : ""));
             }
         }
 }
@@ -75,13 +78,16 @@ TEST(Hessian, CirclePackingsAgreeWithDifferences) {
     Random random(2);
     for (const Geometry geometry : kGeometries)
         for (const Scheme scheme : kPackings)
-            for (const SurfaceMesh& mesh : {scaled(testing::bumpy_torus(6, 5), 0.1), scaled(testing::wavy_square(4), 0.5)}) {
+            for (const SurfaceMesh& mesh :
+                 {scaled(testing::bumpy_torus(6, 5), 0.1), scaled(testing::wavy_square(4), 0.5)}) {
                 const FlowSurface surface = make_flow_surface(mesh, false, false);
-                const CirclePacking packing = initial_circle_packing(mesh.connectivity, mesh.edge_length, geometry, scheme);
+                const CirclePacking packing =
+                    initial_circle_packing(mesh.connectivity, mesh.edge_length, geometry, scheme);
                 PackedMetric metric(surface, packing, geometry, false);
                 std::vector<double> u = packing.u;
                 for (double& x : u) x += random.uniform(-0.02, 0.02);
-                expect_matches_differences(metric, u, std::string(name_of(geometry)) + " " + std::string(name_of(scheme)));
+                expect_matches_differences(
+                    metric, u, std::string(name_of(geometry)) + " " + std::string(name_of(scheme)));
             }
 }
 
@@ -91,7 +97,8 @@ TEST(Hessian, IsSemidefiniteInThePlaneWithConstantsAsKernel) {
     const auto check = [](Metric& metric) {
         const Eigen::MatrixXd h = assembled(metric);
         const Eigen::VectorXd values = h.selfadjointView<Eigen::Lower>().eigenvalues();
-        // Entries of order 10 rounded to 1e-15: the zero eigenvalue to 1e-12; the next is of order 4 pi^2/42 at least.
+        // Entries of order 10 rounded to 1e-15: the zero eigenvalue to 1e-12; the next is of order 4 pi^2/42
+        // at least.
         EXPECT_NEAR(values(0), 0.0, 1e-12);
         EXPECT_GT(values(1), 0.01);
         EXPECT_LT((h * Eigen::VectorXd::Ones(h.rows())).cwiseAbs().maxCoeff(), 1e-12);
@@ -104,7 +111,8 @@ TEST(Hessian, IsSemidefiniteInThePlaneWithConstantsAsKernel) {
     const FlowSurface plain = make_flow_surface(mesh, false, false);
     for (const Scheme scheme : {Scheme::tangential, Scheme::thurston}) {
         // eta in [0, 1]: never broken (Thurston), for any radii.
-        const CirclePacking packing = initial_circle_packing(mesh.connectivity, mesh.edge_length, Geometry::euclidean, scheme);
+        const CirclePacking packing =
+            initial_circle_packing(mesh.connectivity, mesh.edge_length, Geometry::euclidean, scheme);
         PackedMetric packed(plain, packing, Geometry::euclidean, false);
         ASSERT_TRUE(packed.move_to(random.uniforms(42, -1, 1)));
         ASSERT_TRUE(packed.evaluate(true)) << name_of(scheme);
@@ -128,7 +136,8 @@ TEST(Hessian, IsPositiveDefiniteInTheHyperbolicPlane) {
     const FlowSurface plain = make_flow_surface(mesh, false, false);
     for (const Scheme scheme : {Scheme::tangential, Scheme::thurston})
         for (int trial = 0; trial < 5; ++trial) {
-            const CirclePacking packing = initial_circle_packing(mesh.connectivity, mesh.edge_length, Geometry::hyperbolic, scheme);
+            const CirclePacking packing =
+                initial_circle_packing(mesh.connectivity, mesh.edge_length, Geometry::hyperbolic, scheme);
             PackedMetric packed(plain, packing, Geometry::hyperbolic, false);
             ASSERT_TRUE(packed.move_to(random.uniforms(42, -2.5, -0.5)));
             ASSERT_TRUE(packed.evaluate(true)) << name_of(scheme);
@@ -172,9 +181,10 @@ Eigen::MatrixXd by_definition(const Connectivity& c, const std::vector<Index>& u
 TEST(Hessian, FollowsFlipsLikeAFreshBuild) {
     Random random(5);
     const std::vector<IntrinsicTriangulation<double>> starts = {
-        intrinsic_triangulation<double>(testing::octahedron()), intrinsic_triangulation<double>(testing::bumpy_torus(5, 4)),
-        intrinsic_triangulation<double>(testing::wavy_square(4)), testing::one_vertex_torus<double>(1, 1.1, 1.2),
-        testing::folded_square<double>(1)};
+        intrinsic_triangulation<double>(testing::octahedron()),
+        intrinsic_triangulation<double>(testing::bumpy_torus(5, 4)),
+        intrinsic_triangulation<double>(testing::wavy_square(4)),
+        testing::one_vertex_torus<double>(1, 1.1, 1.2), testing::folded_square<double>(1)};
     int same_pattern = 0, new_pattern = 0, loops = 0;
     for (const auto& start : starts)
         for (int trial = 0; trial < 12; ++trial) {
@@ -195,7 +205,8 @@ TEST(Hessian, FollowsFlipsLikeAFreshBuild) {
             for (int round = 0; round < 6; ++round) {
                 const auto touched = flip_some(t, round < 3 ? 1 : 20, random);
                 (followed.follow_flips(t.connectivity, touched) ? new_pattern : same_pattern) += 1;
-                const auto off = random.uniforms(t.log_chord.size(), -1, 1), diagonal = random.uniforms(t.log_chord.size(), -1, 1);
+                const auto off = random.uniforms(t.log_chord.size(), -1, 1),
+                           diagonal = random.uniforms(t.log_chord.size(), -1, 1);
                 for (Index h = 0; h < t.connectivity.halfedge_count(); ++h)
                     loops += t.connectivity.tail[at(h)] == t.connectivity.head(h) ? 1 : 0;
                 std::vector<double> values;
@@ -228,7 +239,8 @@ TEST(Hessian, PatternIsSortedAndUnique) {
     for (std::size_t j = 0; j < 20; ++j) {
         EXPECT_EQ(p.row[at(p.column_begin[j])], static_cast<Index>(j)) << "the diagonal comes first";
         EXPECT_EQ(assembler.diagonal_positions()[j], p.column_begin[j]);
-        for (Index q = p.column_begin[j] + 1; q < p.column_begin[j + 1]; ++q) EXPECT_LT(p.row[at(q) - 1], p.row[at(q)]);
+        for (Index q = p.column_begin[j] + 1; q < p.column_begin[j + 1]; ++q)
+            EXPECT_LT(p.row[at(q) - 1], p.row[at(q)]);
     }
 }
 

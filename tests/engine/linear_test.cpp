@@ -47,7 +47,8 @@ SparseMatrix laplacian(const SurfaceMesh& mesh, double shift, Random& random) {
     return m;
 }
 
-double relative_error(const SparseMatrix& m, const std::vector<double>& rhs, const std::vector<double>& solution) {
+double relative_error(const SparseMatrix& m, const std::vector<double>& rhs,
+                      const std::vector<double>& solution) {
     const Eigen::MatrixXd dense = testing::dense_of(m.pattern, m.values);
     const Eigen::Map<const Eigen::VectorXd> b(rhs.data(), dense.rows()), x(solution.data(), dense.rows());
     const Eigen::VectorXd expected = dense.fullPivLu().solve(b);
@@ -98,7 +99,8 @@ TEST(SymmetricSolver, SolvesIndefiniteSystems) {
     solver->solve(rhs, solution);
     // No pivoting: growth is possible; this matrix shows none beyond 1e4.
     EXPECT_LT(relative_error(m, rhs, solution), 1e-11);
-    const Eigen::VectorXd eigenvalues = testing::dense_of(m.pattern, m.values).selfadjointView<Eigen::Lower>().eigenvalues();
+    const Eigen::VectorXd eigenvalues =
+        testing::dense_of(m.pattern, m.values).selfadjointView<Eigen::Lower>().eigenvalues();
     ASSERT_LT(eigenvalues.minCoeff(), -0.1);
     ASSERT_GT(eigenvalues.maxCoeff(), 0.1);
 }
@@ -111,10 +113,11 @@ TEST(SymmetricSolver, RepeatedAnalysisReproducesEveryBit) {
     const auto last = static_cast<Index>(m.pattern.size() - 1);
     auto& begin = other.pattern.column_begin;
     const auto end_of_first = begin[1];
-    const auto inserted = std::find(other.pattern.row.begin(), other.pattern.row.begin() + end_of_first, last) ==
-                          other.pattern.row.begin() + end_of_first;
+    const auto inserted = std::find(other.pattern.row.begin(), other.pattern.row.begin() + end_of_first,
+                                    last) == other.pattern.row.begin() + end_of_first;
     const Index row = inserted ? last : last / 2;
-    auto position = std::lower_bound(other.pattern.row.begin(), other.pattern.row.begin() + end_of_first, row);
+    auto position =
+        std::lower_bound(other.pattern.row.begin(), other.pattern.row.begin() + end_of_first, row);
     ASSERT_NE(*position, row);
     other.values.insert(other.values.begin() + (position - other.pattern.row.begin()), -0.001);
     other.pattern.row.insert(position, row);

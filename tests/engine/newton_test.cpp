@@ -30,7 +30,8 @@ SurfaceMesh scaled(SurfaceMesh mesh, double size) {
 }
 
 /// All vertices prescribed, but for those marked in `fixed`.
-CurvatureTarget target_of(std::vector<double> curvature, Geometry geometry, const std::vector<std::uint8_t>& fixed = {}) {
+CurvatureTarget target_of(std::vector<double> curvature, Geometry geometry,
+                          const std::vector<std::uint8_t>& fixed = {}) {
     CurvatureTarget target;
     target.unknown.assign(curvature.size(), -1);
     bool any = false;
@@ -66,14 +67,16 @@ void settle(std::vector<double>& u, bool scale_free) {
 
 void expect_gauss_bonnet(const Metric& metric, Geometry geometry, const std::string& what) {
     const auto curvature = metric.curvature();
-    const double total = std::accumulate(curvature.begin(), curvature.end(), 0.0) + curvature_sign(geometry) * metric.area();
+    const double total =
+        std::accumulate(curvature.begin(), curvature.end(), 0.0) + curvature_sign(geometry) * metric.area();
     // Every angle to a few eps pi: some 100 vertices.
     EXPECT_NEAR(total, 2 * pi * metric.surface().topology.euler_characteristic, 1e-12) << what;
 }
 
 /// Flows from `start` to K(goal) and expects `goal`.
-void expect_recovers(Metric& metric, Geometry geometry, Scheme scheme, std::vector<double> goal, std::vector<double> start,
-                     const std::vector<std::uint8_t>& fixed, const std::string& what) {
+void expect_recovers(Metric& metric, Geometry geometry, Scheme scheme, std::vector<double> goal,
+                     std::vector<double> start, const std::vector<std::uint8_t>& fixed,
+                     const std::string& what) {
     const std::vector<double> curvature = testing::curvature_at(metric, goal);
     ASSERT_FALSE(curvature.empty()) << what << ": the goal is broken";
     expect_gauss_bonnet(metric, geometry, what);
@@ -85,7 +88,8 @@ void expect_recovers(Metric& metric, Geometry geometry, Scheme scheme, std::vect
     settle(goal, target.scale_free);
     settle(start, target.scale_free);
     // Residual 1e-11 over the smallest eigenvalue, about 0.1.
-    for (std::size_t v = 0; v < goal.size(); ++v) ASSERT_NEAR(start[v], goal[v], 1e-9) << what << ", vertex " << v;
+    for (std::size_t v = 0; v < goal.size(); ++v)
+        ASSERT_NEAR(start[v], goal[v], 1e-9) << what << ", vertex " << v;
 }
 
 TEST(Newton, RecoversManufacturedPackingsInEveryGeometry) {
@@ -96,10 +100,13 @@ TEST(Newton, RecoversManufacturedPackingsInEveryGeometry) {
             for (const bool closed : {true, false})
                 for (const bool free : {false, true}) {
                     if (closed && free) continue;
-                    // The doubled noise keeps inversive distances generic; the square has obtuse ones nowhere.
-                    const SurfaceMesh mesh = closed ? scaled(testing::bumpy_torus(8, 6), 0.1) : scaled(testing::wavy_square(5, 0.1), 0.6);
+                    // The doubled noise keeps inversive distances generic; the square has obtuse ones
+                    // nowhere.
+                    const SurfaceMesh mesh = closed ? scaled(testing::bumpy_torus(8, 6), 0.1)
+                                                    : scaled(testing::wavy_square(5, 0.1), 0.6);
                     const FlowSurface surface = make_flow_surface(mesh, false, false);
-                    const CirclePacking packing = initial_circle_packing(mesh.connectivity, mesh.edge_length, geometry, scheme);
+                    const CirclePacking packing =
+                        initial_circle_packing(mesh.connectivity, mesh.edge_length, geometry, scheme);
                     PackedMetric metric(surface, packing, geometry, false);
                     const double size = scheme == Scheme::virtual_radius ? 0.01 : 0.04;
                     std::vector<double> goal = packing.u;
@@ -125,7 +132,8 @@ TEST(Newton, RecoversManufacturedScalingFarAway) {
             const CurvatureTarget target = target_of(curvature, geometry);
             NewtonSolver solver(surface, target, Definiteness::positive, false);
             std::vector<double> u(63, 0.0);
-            const SolveOutcome outcome = solver.solve(metric, target, options_for(geometry, Scheme::vertex_scaling), u);
+            const SolveOutcome outcome =
+                solver.solve(metric, target, options_for(geometry, Scheme::vertex_scaling), u);
             ASSERT_EQ(outcome.status, Status::converged);
             EXPECT_GT(outcome.flips, 0);
             std::vector<double> expected = goal;
@@ -159,9 +167,12 @@ TEST(Newton, LogIsCompleteAndDecreasing) {
         EXPECT_EQ(outcome.log[k].iteration, static_cast<std::int32_t>(k));
         EXPECT_GT(outcome.log[k].step, 0.0);
     }
-    // Newton's last steps square the residual: the one before the end is at most its root, but for a factor.
-    const double last = outcome.log.back().residual_max, before = outcome.log[outcome.log.size() - 2].residual_max;
-    EXPECT_LT(last, std::max(100 * before * before, 1e-13));
+    // Newton's last steps square the residual, but for a factor; solved by the last factor and conjugate
+    // gradients (to a relative 1e-2 at worst, or to a tenth of the tolerance) they still gain two digits
+    // each.
+    const double last = outcome.log.back().residual_max,
+                 before = outcome.log[outcome.log.size() - 2].residual_max;
+    EXPECT_LT(last, std::max(100 * before * before, 0.1 * options.tolerance));
 }
 
 TEST(Newton, StopsWhereItIsTold) {
@@ -255,7 +266,8 @@ TEST(GradientDescent, AgreesWithNewton) {
 TEST(GradientDescent, AgreesWithNewtonForAPacking) {
     const SurfaceMesh mesh = testing::bumpy_torus(6, 5);
     const FlowSurface surface = make_flow_surface(mesh, false, false);
-    const CirclePacking packing = initial_circle_packing(mesh.connectivity, mesh.edge_length, Geometry::euclidean, Scheme::tangential);
+    const CirclePacking packing =
+        initial_circle_packing(mesh.connectivity, mesh.edge_length, Geometry::euclidean, Scheme::tangential);
     PackedMetric metric(surface, packing, Geometry::euclidean, false);
     const CurvatureTarget target = target_of(std::vector<double>(30, 0.0), Geometry::euclidean);
     SolveOptions options;

@@ -39,8 +39,10 @@ class Recorder : public SweepSink {
             EXPECT_FALSE(finished.contains(item)) << "a block after the end of its item";
             // NaN is not equal to itself.
             const double distortion = std::isnan(s.area_distortion) ? -1.0 : s.area_distortion;
-            const bool fresh = rows.emplace(std::pair(item, s.vertex), Row{s.status, distortion, s.residual_max, s.newton_iterations,
-                                                                           s.flips, std::move(s.conformal_factor)}).second;
+            const bool fresh = rows.emplace(std::pair(item, s.vertex),
+                                            Row{s.status, distortion, s.residual_max, s.newton_iterations,
+                                                s.flips, std::move(s.conformal_factor)})
+                                   .second;
             EXPECT_TRUE(fresh) << "vertex " << s.vertex << " twice";
         }
         after_block();
@@ -106,7 +108,8 @@ TEST(Scheduler, RowsDoNotDependOnThreadsOrBlocks) {
             options.block_seconds = block_seconds;
             Recorder recorder;
             run_sweeps(3, open_sample, recorder, options);
-            EXPECT_TRUE(recorder.rows == reference.rows) << threads << " threads, blocks of " << block_seconds;
+            EXPECT_TRUE(recorder.rows == reference.rows)
+                << threads << " threads, blocks of " << block_seconds;
             EXPECT_EQ(recorder.finished, reference.finished);
         }
 }
@@ -117,19 +120,26 @@ TEST(Scheduler, SourcesAreOpenedInOrderOneAtATime) {
     Recorder recorder;
     SchedulerOptions options;
     options.threads = 3;
-    run_sweeps(3, [&](std::size_t source) {
-        EXPECT_EQ(++inside, 1);
-        opened.push_back(source);
-        auto tasks = open_sample(source);
-        --inside;
-        return tasks;
-    }, recorder, options);
+    run_sweeps(
+        3,
+        [&](std::size_t source) {
+            EXPECT_EQ(++inside, 1);
+            opened.push_back(source);
+            auto tasks = open_sample(source);
+            --inside;
+            return tasks;
+        },
+        recorder, options);
     EXPECT_EQ(opened, (std::vector<std::size_t>{0, 1, 2}));
 }
 
 TEST(Scheduler, ItemsWithoutVerticesAreFinishedAtOnce) {
     Recorder recorder;
-    run_sweeps(2, [](std::size_t source) { return std::vector<SweepTask>{{source, eight(300, 1), {}}}; }, recorder, {});
+    run_sweeps(2,
+               [](std::size_t source) {
+                   return std::vector<SweepTask>{{source, eight(300, 1), {}}};
+               },
+               recorder, {});
     EXPECT_EQ(recorder.finished, (std::set<std::size_t>{0, 1}));
     EXPECT_TRUE(recorder.rows.empty());
 }
@@ -220,10 +230,14 @@ TEST(Scheduler, ExceptionsOfTheSinkAndOfOpenComeThrough) {
         }
         EXPECT_LT(sink.rows.size(), 60U);
         Recorder recorder;
-        EXPECT_THROW(run_sweeps(3, [](std::size_t source) {
-            if (source == 1) throw std::logic_error("open");
-            return open_sample(source);
-        }, recorder, options), std::logic_error);
+        EXPECT_THROW(run_sweeps(
+                         3,
+                         [](std::size_t source) {
+                             if (source == 1) throw std::logic_error("open");
+                             return open_sample(source);
+                         },
+                         recorder, options),
+                     std::logic_error);
     }
 }
 

@@ -29,8 +29,10 @@ TEST(CirclePacking, ExactSchemesReproduceTheLengths) {
             const CirclePacking p = initial_circle_packing(mesh.connectivity, length, geometry, scheme);
             std::vector<double> made(length.size());
             packed_edge_lengths(geometry, {mesh.connectivity.tail, p.eta, p.eps, p.u}, made);
-            // cosh l - cosh r cosh r' cancels: l^2 of 0.01 against 1, so 100 eps and the square root's half of it back.
-            for (std::size_t h = 0; h < made.size(); ++h) EXPECT_NEAR(made[h] / length[h], 1.0, 1e-12) << name_of(geometry);
+            // cosh l - cosh r cosh r' cancels: l^2 of 0.01 against 1, so 100 eps and the square root's half
+            // of it back.
+            for (std::size_t h = 0; h < made.size(); ++h)
+                EXPECT_NEAR(made[h] / length[h], 1.0, 1e-12) << name_of(geometry);
             EXPECT_LT(p.max_length_error, 1e-12);
             EXPECT_LE(p.mean_length_error, p.max_length_error);
             EXPECT_EQ(p.clipped_edges, 0);
@@ -40,13 +42,15 @@ TEST(CirclePacking, ExactSchemesReproduceTheLengths) {
 TEST(CirclePacking, RadiiAreAveragesOverCorners) {
     // In the octahedron every corner radius is half an edge.
     const SurfaceMesh mesh = testing::octahedron();
-    const CirclePacking p = initial_circle_packing(mesh.connectivity, mesh.edge_length, Geometry::euclidean, Scheme::tangential);
+    const CirclePacking p =
+        initial_circle_packing(mesh.connectivity, mesh.edge_length, Geometry::euclidean, Scheme::tangential);
     for (const double u : p.u) EXPECT_NEAR(u, std::log(std::sqrt(2.0) / 2), 1e-15);
     EXPECT_LT(p.max_length_error, 1e-15);
     for (const double e : p.eta) EXPECT_EQ(e, 1.0);
     // Tangential packings of an uneven mesh miss its lengths, and say so.
     const SurfaceMesh uneven = testing::bumpy_torus(8, 7);
-    const CirclePacking q = initial_circle_packing(uneven.connectivity, uneven.edge_length, Geometry::euclidean, Scheme::tangential);
+    const CirclePacking q = initial_circle_packing(uneven.connectivity, uneven.edge_length,
+                                                   Geometry::euclidean, Scheme::tangential);
     EXPECT_GT(q.max_length_error, 0.05);
     EXPECT_GT(q.mean_length_error, 0.01);
     EXPECT_LT(q.mean_length_error, q.max_length_error);
@@ -79,11 +83,14 @@ TEST(CirclePacking, ThurstonClipsExactlyTheEdgesOutsideItsRange) {
 
 TEST(CirclePacking, EtaIsEqualOnTwins) {
     const SurfaceMesh mesh = testing::bumpy_torus(5, 6);
-    for (const Scheme scheme : {Scheme::inversive_distance, Scheme::thurston, Scheme::tangential, Scheme::virtual_radius}) {
-        const CirclePacking p = initial_circle_packing(mesh.connectivity, mesh.edge_length, Geometry::euclidean, scheme);
+    for (const Scheme scheme :
+         {Scheme::inversive_distance, Scheme::thurston, Scheme::tangential, Scheme::virtual_radius}) {
+        const CirclePacking p =
+            initial_circle_packing(mesh.connectivity, mesh.edge_length, Geometry::euclidean, scheme);
         for (Index h = 0; h < mesh.connectivity.halfedge_count(); ++h)
             // The two ends enter symmetrically, but for the order of a product.
-            EXPECT_NEAR(p.eta[at(h)], p.eta[at(mesh.connectivity.twin[at(h)])], 1e-14 * (1 + std::abs(p.eta[at(h)])));
+            EXPECT_NEAR(p.eta[at(h)], p.eta[at(mesh.connectivity.twin[at(h)])],
+                        1e-14 * (1 + std::abs(p.eta[at(h)])));
     }
 }
 

@@ -18,9 +18,13 @@ namespace {
 using std::numbers::pi;
 using testing::at;
 
-FlowSurface surface_of(const SurfaceMesh& mesh) { return make_flow_surface(mesh, false, true); }
+FlowSurface surface_of(const SurfaceMesh& mesh) {
+    return make_flow_surface(mesh, false, true);
+}
 
-double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+double sum(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0);
+}
 
 TEST(Target, KindsAreWhatTheyAreCalled) {
     const FlowSurface ball = surface_of(testing::icosahedron()), square = surface_of(testing::wavy_square(4));
@@ -28,12 +32,15 @@ TEST(Target, KindsAreWhatTheyAreCalled) {
     options.target = TargetKind::uniform;
     for (const double k : make_target(ball, options, Geometry::euclidean, Boundary::geodesic).curvature)
         EXPECT_DOUBLE_EQ(k, 4 * pi / 12);
-    for (const double k : make_target(ball, options, Geometry::spherical, Boundary::geodesic).curvature) EXPECT_EQ(k, 0.0);
-    EXPECT_THROW(make_target(square, options, Geometry::euclidean, Boundary::curvature), std::invalid_argument);
+    for (const double k : make_target(ball, options, Geometry::spherical, Boundary::geodesic).curvature)
+        EXPECT_EQ(k, 0.0);
+    EXPECT_THROW(make_target(square, options, Geometry::euclidean, Boundary::curvature),
+                 std::invalid_argument);
     options.target = TargetKind::boundary;
     EXPECT_THROW(make_target(ball, options, Geometry::euclidean, Boundary::curvature), std::invalid_argument);
     const CurvatureTarget boundary = make_target(square, options, Geometry::euclidean, Boundary::curvature);
-    for (std::size_t v = 0; v < 25; ++v) EXPECT_DOUBLE_EQ(boundary.curvature[v], square.boundary[v] ? 2 * pi / 16 : 0.0);
+    for (std::size_t v = 0; v < 25; ++v)
+        EXPECT_DOUBLE_EQ(boundary.curvature[v], square.boundary[v] ? 2 * pi / 16 : 0.0);
     EXPECT_EQ(boundary.unknown_count, 25);
     EXPECT_TRUE(boundary.scale_free);
     EXPECT_FALSE(make_target(square, options, Geometry::hyperbolic, Boundary::curvature).scale_free);
@@ -49,7 +56,8 @@ TEST(Target, FreeBoundariesHaveNoUnknowns) {
     EXPECT_EQ(target.curvature[12], 0.5);
     for (std::size_t v = 0; v < 25; ++v) EXPECT_EQ(target.unknown[v] < 0, square.boundary[v] == 1);
     // One square of two triangles has no interior vertex.
-    EXPECT_THROW(make_target(surface_of(testing::wavy_square(1)), {}, Geometry::euclidean, Boundary::free), std::invalid_argument);
+    EXPECT_THROW(make_target(surface_of(testing::wavy_square(1)), {}, Geometry::euclidean, Boundary::free),
+                 std::invalid_argument);
 }
 
 TEST(Target, RefusesWhatDoesNotFitTheSurface) {
@@ -81,16 +89,19 @@ TEST(Target, UnusedVerticesAreLeftOut) {
     const SurfaceMesh mesh = make_surface_mesh(points, testing::icosahedron_triangles());
     FlowOptions options;
     options.target = TargetKind::uniform;
-    const CurvatureTarget target = make_target(surface_of(mesh), options, Geometry::euclidean, Boundary::geodesic);
+    const CurvatureTarget target =
+        make_target(surface_of(mesh), options, Geometry::euclidean, Boundary::geodesic);
     EXPECT_EQ(target.unknown[12], -1);
     EXPECT_EQ(target.curvature[12], 0.0);
     EXPECT_NEAR(sum(target.curvature), 4 * pi, 1e-14);
     options.cones = {{12, 0.1}};
-    EXPECT_THROW(make_target(surface_of(mesh), options, Geometry::euclidean, Boundary::geodesic), std::invalid_argument);
+    EXPECT_THROW(make_target(surface_of(mesh), options, Geometry::euclidean, Boundary::geodesic),
+                 std::invalid_argument);
 }
 
 /// What inadmissibility() says of given curvatures.
-std::string verdict(const FlowSurface& surface, const std::vector<double>& values, Geometry geometry, Boundary boundary) {
+std::string verdict(const FlowSurface& surface, const std::vector<double>& values, Geometry geometry,
+                    Boundary boundary) {
     FlowOptions options;
     options.target = TargetKind::values;
     options.target_values = values;
@@ -118,7 +129,8 @@ TEST(Inadmissibility, SumsMustFollowGaussBonnet) {
 }
 
 TEST(Inadmissibility, ConesStayBelowTwoPiAndBoundaryConesBelowPi) {
-    const FlowSurface torus = surface_of(testing::bumpy_torus(4, 4)), square = surface_of(testing::wavy_square(4));
+    const FlowSurface torus = surface_of(testing::bumpy_torus(4, 4)),
+                      square = surface_of(testing::wavy_square(4));
     std::vector<double> k(16, 0.0);
     k[3] = 2 * pi;
     k[4] = -2 * pi;
@@ -158,7 +170,8 @@ TEST(InitialScale, GivesTheAreaThatGaussBonnetAsksFor) {
 }
 
 TEST(ResolveGeometry, FollowsTheEulerCharacteristic) {
-    const Topology sphere = topology_of(testing::octahedron().connectivity), torus = topology_of(testing::bumpy_torus(4, 4).connectivity),
+    const Topology sphere = topology_of(testing::octahedron().connectivity),
+                   torus = topology_of(testing::bumpy_torus(4, 4).connectivity),
                    disk = topology_of(testing::wavy_square(3).connectivity);
     Topology eight = torus;
     eight.euler_characteristic = -2;

@@ -46,8 +46,10 @@ struct SchemeCase {
 
 // Vertex scaling takes eta = lambda^2/2 (plane) or lambda^2/8: chords between 0.45 and 0.77 here.
 constexpr std::array kSchemes = {
-    SchemeCase{"vertex scaling", 0, 0.1, 0.3},   SchemeCase{"tangential", 1, 1, 1},
-    SchemeCase{"Thurston", 1, 0, 1},             SchemeCase{"inversive distance", 1, 1, 1.6},
+    SchemeCase{"vertex scaling", 0, 0.1, 0.3},
+    SchemeCase{"tangential", 1, 1, 1},
+    SchemeCase{"Thurston", 1, 0, 1},
+    SchemeCase{"inversive distance", 1, 1, 1.6},
     SchemeCase{"virtual radius", -1, 1.5, 2.0},
 };
 constexpr std::array kGeometries = {Geometry::euclidean, Geometry::hyperbolic, Geometry::spherical};
@@ -69,7 +71,8 @@ bool check_triangle(Geometry geometry, PackedTriangle t, const std::string& what
     const Derivatives d = evaluate(geometry, t);
     if (d.broken != 0) return false;
     for (const double a : d.angle)
-        if (a < 0.15 || a > 2.8) return false;  // near-degenerate: differences would not resolve the third derivative
+        if (a < 0.15 || a > 2.8)
+            return false;  // near-degenerate: differences would not resolve the third derivative
     const double step = 1e-4;
     for (std::size_t j = 0; j < 3; ++j) {
         const double u = t.u[j];
@@ -120,12 +123,16 @@ TEST(AngleDerivatives, RowsOfAEuclideanTriangleSumToZero) {
     Random random(4);
     for (const SchemeCase& scheme : kSchemes)
         for (int trial = 0; trial < 100; ++trial) {
-            const Derivatives d = evaluate(Geometry::euclidean, random_triangle(scheme, Geometry::euclidean, random));
+            const Derivatives d =
+                evaluate(Geometry::euclidean, random_triangle(scheme, Geometry::euclidean, random));
             if (d.broken != 0) continue;
             for (std::size_t i = 0; i < 3; ++i) {
-                const double size = std::abs(d.off[i]) + std::abs(d.off[(i + 2) % 3]) + std::abs(d.diagonal[i]);
-                // Scaling all circles changes no angle. Cancellation in the angle's own rounding: sizes up to 1e3.
-                EXPECT_NEAR(d.diagonal[i] + d.off[i] + d.off[(i + 2) % 3], 0.0, 1e-13 * (1 + size * size)) << scheme.name;
+                const double size =
+                    std::abs(d.off[i]) + std::abs(d.off[(i + 2) % 3]) + std::abs(d.diagonal[i]);
+                // Scaling all circles changes no angle. Cancellation in the angle's own rounding: sizes up to
+                // 1e3.
+                EXPECT_NEAR(d.diagonal[i] + d.off[i] + d.off[(i + 2) % 3], 0.0, 1e-13 * (1 + size * size))
+                    << scheme.name;
             }
         }
 }
@@ -134,11 +141,15 @@ TEST(AngleDerivatives, EuclideanVertexScalingIsHalfTheCotangent) {
     Random random(5);
     for (int trial = 0; trial < 200; ++trial) {
         const std::vector<Index> tail = {0, 1, 2};
-        const std::vector<double> log_chord = random.uniforms(3, -0.3, 0.3), u = random.uniforms(3, -0.02, 0.02);
+        const std::vector<double> log_chord = random.uniforms(3, -0.3, 0.3),
+                                  u = random.uniforms(3, -0.02, 0.02);
         std::vector<double> angle(3), off(3), diagonal(3);
-        ASSERT_EQ(evaluate_faces<double>(Geometry::euclidean, {tail, log_chord, u}, {angle, off, diagonal, {}}, false), 0);
+        ASSERT_EQ(evaluate_faces<double>(Geometry::euclidean, {tail, log_chord, u},
+                                         {angle, off, diagonal, {}}, false),
+                  0);
         for (std::size_t k = 0; k < 3; ++k) {
-            // Halfedge k lies opposite corner k+2; angles above 0.2 here, so the cotangent amplifies 1e-15 by 25.
+            // Halfedge k lies opposite corner k+2; angles above 0.2 here, so the cotangent amplifies 1e-15
+            // by 25.
             EXPECT_NEAR(off[k], 0.5 / std::tan(angle[(k + 2) % 3]), 1e-13);
             EXPECT_NEAR(diagonal[k], -(off[k] + off[(k + 2) % 3]), 1e-13);
         }
@@ -154,16 +165,18 @@ TEST(AngleDerivatives, VertexScalingIsTheCirclePackingWithEpsilonZero) {
             for (std::size_t k = 0; k < 3; ++k)
                 log_chord[k] = 0.5 * std::log((geometry == Geometry::euclidean ? 2.0 : 8.0) * t.eta[k]);
             std::vector<double> angle(3), off(3), diagonal(3), area(1), packed_area(1);
-            const auto broken = evaluate_faces<double>(geometry, {t.tail, log_chord, t.u}, {angle, off, diagonal, area}, false);
+            const auto broken = evaluate_faces<double>(geometry, {t.tail, log_chord, t.u},
+                                                       {angle, off, diagonal, area}, false);
             const Derivatives d = evaluate(geometry, t);
             ASSERT_EQ(broken, d.broken);
             if (broken != 0) continue;
             evaluate_faces(geometry, t.view(), {{}, {}, {}, packed_area}, false);
             EXPECT_NEAR(area[0], packed_area[0], 1e-14);
             for (std::size_t k = 0; k < 3; ++k) {
-                // The same function by different roundings; derivatives are up to 1/sin(angle), their condition its square.
-                const double condition = 1 / std::pow(std::sin(d.angle[k]), 2) + std::abs(off[k]) * std::abs(off[k]) +
-                                         diagonal[k] * diagonal[k];
+                // The same function by different roundings; derivatives are up to 1/sin(angle), their
+                // condition its square.
+                const double condition = 1 / std::pow(std::sin(d.angle[k]), 2) +
+                                         std::abs(off[k]) * std::abs(off[k]) + diagonal[k] * diagonal[k];
                 EXPECT_NEAR(angle[k], d.angle[k], 1e-14 * (1 + condition));
                 EXPECT_NEAR(off[k], d.off[k], 1e-13 * (1 + condition));
                 EXPECT_NEAR(diagonal[k], d.diagonal[k], 1e-13 * (1 + condition));
@@ -173,10 +186,13 @@ TEST(AngleDerivatives, VertexScalingIsTheCirclePackingWithEpsilonZero) {
 
 /// The length formulas of Zhang et al. 2014, table 1, in long double.
 long double printed_length(Geometry geometry, double eta, double ei, double ej, double ui, double uj) {
-    const long double a = ei * std::exp(2 * static_cast<long double>(ui)), b = ej * std::exp(2 * static_cast<long double>(uj));
+    const long double a = ei * std::exp(2 * static_cast<long double>(ui)),
+                      b = ej * std::exp(2 * static_cast<long double>(uj));
     const long double pair = eta * std::exp(static_cast<long double>(ui) + static_cast<long double>(uj));
-    if (geometry == Geometry::hyperbolic) return std::acosh((4 * pair + (1 + a) * (1 + b)) / ((1 - a) * (1 - b)));
-    if (geometry == Geometry::spherical) return std::acos((-4 * pair + (1 - a) * (1 - b)) / ((1 + a) * (1 + b)));
+    if (geometry == Geometry::hyperbolic)
+        return std::acosh((4 * pair + (1 + a) * (1 + b)) / ((1 - a) * (1 - b)));
+    if (geometry == Geometry::spherical)
+        return std::acos((-4 * pair + (1 - a) * (1 - b)) / ((1 + a) * (1 + b)));
     return std::sqrt(2 * pair + a + b);
 }
 
@@ -189,8 +205,10 @@ TEST(PackedEdgeLengths, FollowThePrintedFormulas) {
             packed_edge_lengths(geometry, t.view(), length);
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::size_t j = (k + 1) % 3;
-                const long double expected = printed_length(geometry, t.eta[k], t.eps[k], t.eps[j], t.u[k], t.u[j]);
-                EXPECT_NEAR(length[k], static_cast<double>(expected), 1e-14) << name_of(geometry) << ' ' << scheme.name;
+                const long double expected =
+                    printed_length(geometry, t.eta[k], t.eps[k], t.eps[j], t.u[k], t.u[j]);
+                EXPECT_NEAR(length[k], static_cast<double>(expected), 1e-14)
+                    << name_of(geometry) << ' ' << scheme.name;
             }
         }
 }
@@ -214,9 +232,10 @@ TEST(PackedEdgeLengths, TangentCirclesAddTheirRadii) {
         t.eta.assign(3, 0.0);
         packed_edge_lengths(geometry, t.view(), length);
         const double legs[] = {r[0], r[1]};
-        const double expected = geometry == Geometry::hyperbolic ? std::acosh(std::cosh(legs[0]) * std::cosh(legs[1]))
-                                : geometry == Geometry::spherical ? std::acos(std::cos(legs[0]) * std::cos(legs[1]))
-                                                                  : std::hypot(legs[0], legs[1]);
+        const double expected =
+            geometry == Geometry::hyperbolic  ? std::acosh(std::cosh(legs[0]) * std::cosh(legs[1]))
+            : geometry == Geometry::spherical ? std::acos(std::cos(legs[0]) * std::cos(legs[1]))
+                                              : std::hypot(legs[0], legs[1]);
         EXPECT_NEAR(length[0], expected, 4e-15);
     }
 }

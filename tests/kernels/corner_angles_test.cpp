@@ -1,4 +1,5 @@
-// Corner angles and areas of single triangles against closed forms, in the three geometries and both precisions.
+// Corner angles and areas of single triangles against closed forms, in the three geometries and both
+// precisions.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -34,7 +35,8 @@ Evaluated<T> evaluate(Geometry geometry, std::array<Real, 3> chord) {
     const std::vector<double> u(3, 0.0);
     Evaluated<T> result{};
     std::vector<T> angle(3), area(1);
-    result.broken = evaluate_faces<T>(geometry, ScaledChords<T>{tail, log_chord, u}, {angle, {}, {}, area}, false);
+    result.broken =
+        evaluate_faces<T>(geometry, ScaledChords<T>{tail, log_chord, u}, {angle, {}, {}, area}, false);
     for (std::size_t k = 0; k < 3; ++k) result.angle[k] = angle[k];
     result.area = area[0];
     return result;
@@ -60,9 +62,9 @@ Real cosine_law(Geometry geometry, Real a, Real b, Real c) {
     return std::acos((b * b + c * c - a * a) / (2 * b * c));
 }
 
-/// How far the angles move when every chord moves by `relative` of itself: |d theta_a / d log b| <= cot sums in the plane.
-/// The chords here carry the rounding of a logarithm of size at most `log_size`, of its exponential (4 ulp in the vector
-/// library) and the formula about twenty roundings more.
+/// How far the angles move when every chord moves by `relative` of itself: |d theta_a / d log b| <= cot sums
+/// in the plane. The chords here carry the rounding of a logarithm of size at most `log_size`, of its
+/// exponential (4 ulp in the vector library) and the formula about twenty roundings more.
 double rounding_bound(const std::array<Real, 3>& angle, double log_size) {
     Real cotangents = 1;
     for (const Real a : angle) cotangents += std::abs(1 / std::tan(a));
@@ -92,13 +94,14 @@ TEST(CornerAngles, AgreeWithTheCosineLawInBothPrecisions) {
             const double bound = rounding_bound(expected, 3.0);
             for (std::size_t k = 0; k < 3; ++k) {
                 // acos loses half of the digits near 0 and pi, where its slope 1/sin is below 1e5: 1e-14.
-                ASSERT_NEAR(static_cast<double>(fine.angle[k] - expected[k]), 0.0, 1e-14) << name_of(geometry);
+                ASSERT_NEAR(static_cast<double>(fine.angle[k] - expected[k]), 0.0, 1e-14)
+                    << name_of(geometry);
                 ASSERT_NEAR(static_cast<double>(coarse.angle[k] - expected[k]), 0.0, 1e-14 + bound)
                     << name_of(geometry) << ' ' << l[0] << ' ' << l[1] << ' ' << l[2];
             }
             const Real excess = expected[0] + expected[1] + expected[2] - kPi;
-            const Real area = geometry == Geometry::euclidean ? l[0] * l[1] * std::sin(expected[1]) / 2
-                                                              : std::abs(excess);
+            const Real area =
+                geometry == Geometry::euclidean ? l[0] * l[1] * std::sin(expected[1]) / 2 : std::abs(excess);
             ASSERT_NEAR(static_cast<double>(fine.area - area), 0.0, 1e-13);
             ASSERT_NEAR(static_cast<double>(coarse.area - area), 0.0, 1e-13 + 10 * bound);
         }
@@ -128,7 +131,8 @@ TEST(CornerAngles, AnglesDoNotDependOnScaleInThePlane) {
     const Real sizes[] = {1e-40L, 1.0L, 1e40L};
     for (const Real size : sizes) {
         const auto t = evaluate<double>(Geometry::euclidean, {3 * size, 4 * size, 5 * size});
-        // Corner 1 lies between the halves 3 and 4. Logarithms up to 94: 94/2 ulp each, amplified by cot sums of 25/12.
+        // Corner 1 lies between the halves 3 and 4. Logarithms up to 94: 94/2 ulp each, amplified by cot sums
+        // of 25/12.
         EXPECT_NEAR(t.angle[1], std::numbers::pi / 2, 94 * kEps * 2 * 3.1);
         EXPECT_NEAR(static_cast<double>(t.area / (6 * size * size)), 1.0, 94 * kEps * 4);
     }
@@ -155,7 +159,8 @@ TEST(CornerAngles, LargeHyperbolicTrianglesAreNearlyIdeal) {
     }
 }
 
-/// Largest difference between the corner angles in a curved geometry and Legendre's theorem, theta + kappa A / 3.
+/// Largest difference between the corner angles in a curved geometry and Legendre's theorem, theta + kappa A
+/// / 3.
 Real legendre_defect(Geometry geometry, Real size) {
     const std::array<Real, 3> l = {1.0L * size, 0.8L * size, 0.7L * size};
     const auto curved = evaluate<Real>(geometry, chords_of(geometry, l));
@@ -200,8 +205,10 @@ TEST(CornerAngles, BrokenTrianglesAreCountedAndExtendContinuously) {
     }
     // On the sphere: a chord beyond the diameter, and a perimeter beyond a great circle (three angles of pi).
     EXPECT_EQ(evaluate<double>(Geometry::spherical, {2.1L, 1.9L, 1.9L}).broken, 1);
-    EXPECT_EQ(evaluate<double>(Geometry::spherical, chords_of(Geometry::spherical, {2.2L, 2.2L, 2.2L})).broken, 1);
-    EXPECT_EQ(evaluate<double>(Geometry::spherical, chords_of(Geometry::spherical, {2.0L, 2.0L, 2.0L})).broken, 0);
+    EXPECT_EQ(
+        evaluate<double>(Geometry::spherical, chords_of(Geometry::spherical, {2.2L, 2.2L, 2.2L})).broken, 1);
+    EXPECT_EQ(
+        evaluate<double>(Geometry::spherical, chords_of(Geometry::spherical, {2.0L, 2.0L, 2.0L})).broken, 0);
 }
 
 TEST(CornerAngles, BrokenFacesAreCountedOnceEachInAnyBlock) {

@@ -1,4 +1,5 @@
-// Flips: connectivity, Ptolemy's rule and unfolding, with every way in which the quadrilateral may be glued to itself.
+// Flips: connectivity, Ptolemy's rule and unfolding, with every way in which the quadrilateral may be glued
+// to itself.
 #include "kernels/edge_flip.h"
 
 #include <gtest/gtest.h>
@@ -74,7 +75,9 @@ struct Flatness {
 Flatness flatness(const Triangulation& t) {
     const std::vector<double> u(at(t.connectivity.vertex_count), 0.0);
     std::vector<Real> angle(t.log_chord.size()), area(angle.size() / 3);
-    EXPECT_EQ(evaluate_faces<Real>(Geometry::euclidean, {t.connectivity.tail, t.log_chord, u}, {angle, {}, {}, area}, false), 0);
+    EXPECT_EQ(evaluate_faces<Real>(Geometry::euclidean, {t.connectivity.tail, t.log_chord, u},
+                                   {angle, {}, {}, area}, false),
+              0);
     Flatness result;
     result.angle_sum.resize(u.size());
     sum_corners<Real>(t.connectivity.tail, angle, result.angle_sum);
@@ -86,7 +89,8 @@ void expect_isometric(const Flatness& before, const Triangulation& t, double tol
     const Flatness after = flatness(t);
     EXPECT_NEAR(static_cast<double>(after.area / before.area), 1.0, tolerance);
     for (std::size_t v = 0; v < before.angle_sum.size(); ++v)
-        EXPECT_NEAR(static_cast<double>(after.angle_sum[v] - before.angle_sum[v]), 0.0, tolerance) << "vertex " << v;
+        EXPECT_NEAR(static_cast<double>(after.angle_sum[v] - before.angle_sum[v]), 0.0, tolerance)
+            << "vertex " << v;
 }
 
 /// Whether the quadrilateral around h, unfolded, is convex and its new triangles have angles above `least`.
@@ -95,17 +99,21 @@ bool flips_well(const Triangulation& t, Index h, Real least) {
     if (!flippable(c, h)) return false;
     const std::vector<double> u(at(c.vertex_count), 0.0);
     const auto angle_at = [&](Index corner) {
-        const Real a = std::exp(t.log_chord[at(next_halfedge(corner))]), b = std::exp(t.log_chord[at(corner)]),
+        const Real a = std::exp(t.log_chord[at(next_halfedge(corner))]),
+                   b = std::exp(t.log_chord[at(corner)]),
                    d = std::exp(t.log_chord[at(prev_halfedge(corner))]);
         return std::acos(std::clamp<Real>((b * b + d * d - a * a) / (2 * b * d), -1, 1));
     };
     const Index w = c.twin[at(h)];
-    const Real at_tail = angle_at(h) + angle_at(next_halfedge(w)), at_head = angle_at(next_halfedge(h)) + angle_at(w);
-    if (at_tail > std::numbers::pi_v<Real> - 2 * least || at_head > std::numbers::pi_v<Real> - 2 * least) return false;
+    const Real at_tail = angle_at(h) + angle_at(next_halfedge(w)),
+               at_head = angle_at(next_halfedge(h)) + angle_at(w);
+    if (at_tail > std::numbers::pi_v<Real> - 2 * least || at_head > std::numbers::pi_v<Real> - 2 * least)
+        return false;
     Triangulation trial = t;
     flip(trial, h, FlipRule::isometric);
     std::vector<Real> angle(trial.log_chord.size());
-    if (evaluate_faces<Real>(Geometry::euclidean, {trial.connectivity.tail, trial.log_chord, u}, {angle, {}, {}, {}}, false) != 0)
+    if (evaluate_faces<Real>(Geometry::euclidean, {trial.connectivity.tail, trial.log_chord, u},
+                             {angle, {}, {}, {}}, false) != 0)
         return false;
     return *std::min_element(angle.begin(), angle.end()) > least;
 }
@@ -115,7 +123,8 @@ TEST(EdgeFlip, FollowsTheDiagram) {
     Connectivity c = build_connectivity(std::vector<Triangle>{{0, 1, 2}, {1, 0, 3}}, 4);
     ASSERT_EQ(c.twin[0], 3);
     std::vector<double> logs = {0, 1, 2, 0, 4, 5};  // ij, jk, ki, ji, il, lj
-    const Index edge_ij = c.edge[0], edge_jk = c.edge[1], edge_ki = c.edge[2], edge_il = c.edge[4], edge_lj = c.edge[5];
+    const Index edge_ij = c.edge[0], edge_jk = c.edge[1], edge_ki = c.edge[2], edge_il = c.edge[4],
+                edge_lj = c.edge[5];
     flip_edge<double>(c, logs, 0, 9.0);
     EXPECT_EQ(c.tail, (std::vector<Index>{0, 3, 2, 1, 2, 3}));  // f = i l k, g = j k l
     EXPECT_EQ(c.edge, (std::vector<Index>{edge_il, edge_ij, edge_ki, edge_jk, edge_ij, edge_lj}));
@@ -191,8 +200,8 @@ TEST(EdgeFlip, IsometricFlipsKeepAreaAndCurvature) {
     }
 }
 
-/// Distances between four points in cyclic order, as the log chords of the two faces (0,1,2), (1,0,3) on the circle order
-/// 0, 3, 1, 2: i = 0, j = 1, k = 2, l = 3.
+/// Distances between four points in cyclic order, as the log chords of the two faces (0,1,2), (1,0,3) on the
+/// circle order 0, 3, 1, 2: i = 0, j = 1, k = 2, l = 3.
 template <class Chord>
 void expect_ptolemy(Chord&& chord, const char* what) {
     Connectivity c = build_connectivity(std::vector<Triangle>{{0, 1, 2}, {1, 0, 3}}, 4);
@@ -212,19 +221,27 @@ TEST(EdgeFlip, PtolemyHoldsOnCirclesOfEveryGeometry) {
         angle[2] = angle[1] + random.uniform(0.3, 1.5);
         const Real r = random.uniform(0.2, 1.3);
         const auto turn = [&](Index i, Index j) { return angle[at(i)] - angle[at(j)]; };
-        expect_ptolemy([&](Index i, Index j) {
-            return std::hypot(r * std::cos(angle[at(i)]) - r * std::cos(angle[at(j)]),
-                              r * std::sin(angle[at(i)]) - r * std::sin(angle[at(j)]));
-        }, "plane");
+        expect_ptolemy(
+            [&](Index i, Index j) {
+                return std::hypot(r * std::cos(angle[at(i)]) - r * std::cos(angle[at(j)]),
+                                  r * std::sin(angle[at(i)]) - r * std::sin(angle[at(j)]));
+            },
+            "plane");
         // Distances from the cosine law at the circle's centre, then chords.
-        expect_ptolemy([&](Index i, Index j) {
-            const Real l = std::acos(std::cos(r) * std::cos(r) + std::sin(r) * std::sin(r) * std::cos(turn(i, j)));
-            return 2 * std::sin(l / 2);
-        }, "sphere");
-        expect_ptolemy([&](Index i, Index j) {
-            const Real l = std::acosh(std::cosh(r) * std::cosh(r) - std::sinh(r) * std::sinh(r) * std::cos(turn(i, j)));
-            return 2 * std::sinh(l / 2);
-        }, "hyperbolic plane");
+        expect_ptolemy(
+            [&](Index i, Index j) {
+                const Real l =
+                    std::acos(std::cos(r) * std::cos(r) + std::sin(r) * std::sin(r) * std::cos(turn(i, j)));
+                return 2 * std::sin(l / 2);
+            },
+            "sphere");
+        expect_ptolemy(
+            [&](Index i, Index j) {
+                const Real l = std::acosh(std::cosh(r) * std::cosh(r) -
+                                          std::sinh(r) * std::sinh(r) * std::cos(turn(i, j)));
+                return 2 * std::sinh(l / 2);
+            },
+            "hyperbolic plane");
         // A horocycle: chords are distances along it.
         const std::array<Real, 4> x = {0, r + 1, 2 * r + 2, r / 2};
         expect_ptolemy([&](Index i, Index j) { return std::abs(x[at(i)] - x[at(j)]); }, "horocycle");
@@ -242,7 +259,8 @@ TEST(EdgeFlip, TenThousandRandomFlipsKeepTheConnectivity) {
             if (!flippable(t.connectivity, h)) continue;
             // Any length will do: this is about the gluing. (Ptolemy lengths would overflow after so many.)
             flip_edge<Real>(t.connectivity, t.log_chord, h, random.uniform(-1, 1));
-            loops += t.connectivity.tail[at(next_halfedge(h))] == t.connectivity.head(next_halfedge(h)) ? 1 : 0;
+            loops +=
+                t.connectivity.tail[at(next_halfedge(h))] == t.connectivity.head(next_halfedge(h)) ? 1 : 0;
             if (k % 100 == 0) {
                 ASSERT_STREQ(check_connectivity(t.connectivity), "");
             }
@@ -289,7 +307,8 @@ void scramble(Triangulation& t, int attempts, Random& random) {
 TEST(MakeDelaunay, IsUniqueOnASurfaceWithoutTies) {
     Random random(8);
     DelaunayWorkspace workspace;
-    for (const SurfaceMesh& mesh : {testing::bumpy_torus(6, 5), testing::icosahedron(0.2), testing::wavy_square(5, 0.3)}) {
+    for (const SurfaceMesh& mesh :
+         {testing::bumpy_torus(6, 5), testing::icosahedron(0.2), testing::wavy_square(5, 0.3)}) {
         Triangulation reference = intrinsic_triangulation<Real>(mesh);
         const Flatness before = flatness(reference);
         EXPECT_TRUE(make_delaunay<Real>(reference, {}, FlipRule::isometric, workspace).finished);
@@ -328,7 +347,9 @@ TEST(MakeDelaunay, PtolemyFlipsAtAnyConformalFactorEndInTrianglesAndAreUnique) {
         EXPECT_STREQ(check_connectivity(t.connectivity), "");
         // A Delaunay triangulation of chords satisfies the triangle inequality (Gu, Luo, Sun, Wu 2018).
         std::vector<Real> angle(t.log_chord.size()), total(42);
-        EXPECT_EQ(evaluate_faces<Real>(Geometry::euclidean, {t.connectivity.tail, t.log_chord, u}, {angle, {}, {}, {}}, false), 0);
+        EXPECT_EQ(evaluate_faces<Real>(Geometry::euclidean, {t.connectivity.tail, t.log_chord, u},
+                                       {angle, {}, {}, {}}, false),
+                  0);
         // By way of another conformal factor: the same triangulation of the same metric.
         Triangulation detour = start;
         make_delaunay<Real>(detour, random.uniforms(42, -1.5, 1.5), FlipRule::ptolemy, workspace);
@@ -345,7 +366,8 @@ TEST(MakeDelaunay, PtolemyFlipsAtAnyConformalFactorEndInTrianglesAndAreUnique) {
 }
 
 TEST(MakeDelaunay, LeavesTiesAlone) {
-    // Every square of a flat grid is cocircular to rounding; scaled so that rounding differs from edge to edge.
+    // Every square of a flat grid is cocircular to rounding; scaled so that rounding differs from edge to
+    // edge.
     DelaunayWorkspace workspace;
     for (const double scale : {1.0, 0.1, 1.0 / 3.0, 1e10}) {
         std::vector<Point> points;
@@ -392,7 +414,8 @@ TEST(MakeDelaunay, ReportsLengthsThatNeverSettle) {
     DelaunayWorkspace workspace;
     const FlipCount count = make_delaunay<Real>(t, {}, FlipRule::isometric, workspace);
     EXPECT_EQ(count.flips, 0);
-    EXPECT_TRUE(std::all_of(workspace.on_stack.begin(), workspace.on_stack.end(), [](auto x) { return x == 0; }));
+    EXPECT_TRUE(
+        std::all_of(workspace.on_stack.begin(), workspace.on_stack.end(), [](auto x) { return x == 0; }));
 }
 
 }  // namespace

@@ -44,7 +44,8 @@ Faces random_faces(std::size_t faces, Random& random) {
 struct Results {
     std::vector<double> angle, off, diagonal, area;
 
-    explicit Results(std::size_t faces) : angle(3 * faces), off(3 * faces), diagonal(3 * faces), area(faces) {}
+    explicit Results(std::size_t faces)
+        : angle(3 * faces), off(3 * faces), diagonal(3 * faces), area(faces) {}
     FaceFields<double> fields() { return {angle, off, diagonal, area}; }
 };
 
@@ -103,7 +104,8 @@ TEST(FaceKernelBits, AreTheSameInParallelAndWithOrWithoutDerivatives) {
             const Results serial = evaluate(geometry, faces, packed, false);
             const Results parallel = evaluate(geometry, faces, packed, true);
             EXPECT_TRUE(same_bits(serial.angle, parallel.angle) && same_bits(serial.off, parallel.off) &&
-                        same_bits(serial.diagonal, parallel.diagonal) && same_bits(serial.area, parallel.area))
+                        same_bits(serial.diagonal, parallel.diagonal) &&
+                        same_bits(serial.area, parallel.area))
                 << name_of(geometry) << packed;
             // The kernel for angles alone is another instance of the same text.
             std::vector<double> angle(3 * faces.count());
@@ -124,7 +126,8 @@ TEST(FaceKernelBits, DoubleAgreesWithLongDoubleToRounding) {
     std::vector<long double> angle(3 * faces.count()), area(faces.count());
     std::vector<double> off(3 * faces.count()), diagonal(3 * faces.count());
     for (const Geometry geometry : kGeometries) {
-        const auto broken = evaluate_faces<long double>(geometry, {faces.tail, log_chord, faces.u}, {angle, off, diagonal, area}, false);
+        const auto broken = evaluate_faces<long double>(geometry, {faces.tail, log_chord, faces.u},
+                                                        {angle, off, diagonal, area}, false);
         ASSERT_EQ(broken, 0);
         const Results r = evaluate(geometry, faces, false, false);
         constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -132,12 +135,14 @@ TEST(FaceKernelBits, DoubleAgreesWithLongDoubleToRounding) {
             const std::size_t f = 3 * (h / 3);
             long double cotangents = 1;
             for (std::size_t k = f; k < f + 3; ++k) cotangents += std::abs(1 / std::tan(angle[k]));
-            // Chords: sums of logarithms up to 3 (3 ulp) and the vector library's exp (4 ulp); the formula: about 20
-            // roundings. An angle moves by at most the sum of cotangents times the relative change of the chords.
+            // Chords: sums of logarithms up to 3 (3 ulp) and the vector library's exp (4 ulp); the formula:
+            // about 20 roundings. An angle moves by at most the sum of cotangents times the relative change
+            // of the chords.
             const double bound = 30 * eps * 2 * static_cast<double>(cotangents);
             ASSERT_NEAR(static_cast<double>(r.angle[h] - angle[h]), 0.0, bound) << name_of(geometry);
             // Cotangents move by 1 + cot^2 times as much as the angles.
-            const double slope = 1 + 4 * off[h] * off[h] + diagonal[h] * diagonal[h] + static_cast<double>(cotangents * cotangents);
+            const double slope = 1 + 4 * off[h] * off[h] + diagonal[h] * diagonal[h] +
+                                 static_cast<double>(cotangents * cotangents);
             ASSERT_NEAR(r.off[h], off[h], bound * slope) << name_of(geometry);
             ASSERT_NEAR(r.diagonal[h], diagonal[h], bound * slope) << name_of(geometry);
             ASSERT_NEAR(static_cast<double>(r.area[h / 3] - area[h / 3]), 0.0, bound) << name_of(geometry);
@@ -154,7 +159,9 @@ TEST(FaceKernels, RelabellingVerticesPermutesCurvature) {
         const auto angle_sums = [&](const SurfaceMesh& m, const std::vector<double>& u) {
             const auto t = intrinsic_triangulation<double>(m);
             std::vector<double> angle(t.log_chord.size()), total(u.size());
-            EXPECT_EQ(evaluate_faces<double>(geometry, {t.connectivity.tail, t.log_chord, u}, {angle, {}, {}, {}}, false), 0);
+            EXPECT_EQ(evaluate_faces<double>(geometry, {t.connectivity.tail, t.log_chord, u},
+                                             {angle, {}, {}, {}}, false),
+                      0);
             sum_corners<double>(t.connectivity.tail, angle, total);
             return total;
         };

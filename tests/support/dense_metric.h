@@ -30,7 +30,8 @@ inline Eigen::MatrixXd difference_jacobian(Metric& metric, std::vector<double> u
         const std::vector<double> down = curvature_at(metric, u);
         value = middle;
         for (Eigen::Index i = 0; i < n; ++i)
-            jacobian(i, j) = (up[static_cast<std::size_t>(i)] - down[static_cast<std::size_t>(i)]) / (2 * step);
+            jacobian(i, j) =
+                (up[static_cast<std::size_t>(i)] - down[static_cast<std::size_t>(i)]) / (2 * step);
     }
     return jacobian;
 }

@@ -40,7 +40,8 @@ inline std::vector<std::array<Complex, 3>> develop(const Connectivity& c, const 
     tree_edge.assign(at(c.edge_count), false);
     // Corner k+2 of a face whose halfedge k runs from p to q.
     const auto apex = [&](Index h, Complex p, Complex q) {
-        const double l = length[at(h)], to = length[at(prev_halfedge(h))], from = length[at(next_halfedge(h))];
+        const double l = length[at(h)], to = length[at(prev_halfedge(h))],
+                     from = length[at(next_halfedge(h))];
         const double x = (l * l + to * to - from * from) / (2 * l);
         const double s = (l + to + from) / 2;
         const double y = 2 * std::sqrt(s * (s - l) * (s - to) * (s - from)) / l;
@@ -79,7 +80,8 @@ inline Lattice lattice_of(const Connectivity& c, const std::vector<double>& leng
         const Index t = c.twin[at(h)];
         if (tree[at(c.edge[at(h)])] || t < h) continue;
         const auto corner = [&](Index g) { return place[at(face_of(g))][at(g % 3)]; };
-        const Complex from_tail = corner(h) - corner(next_halfedge(t)), from_head = corner(next_halfedge(h)) - corner(t);
+        const Complex from_tail = corner(h) - corner(next_halfedge(t)),
+                      from_head = corner(next_halfedge(h)) - corner(t);
         turn = std::max(turn, std::abs(from_tail - from_head));  // 0: a pure translation
         if (std::abs(from_tail) > 1e-6 * size) translations.push_back(from_tail);
     }
@@ -108,7 +110,8 @@ inline Lattice lattice_of(const Connectivity& c, const std::vector<double>& leng
             }
             reduce(a, b);
             const double determinant = (std::conj(a) * b).imag();
-            const double x = (std::conj(v) * b).imag() / determinant, y = (std::conj(a) * v).imag() / determinant;
+            const double x = (std::conj(v) * b).imag() / determinant,
+                         y = (std::conj(a) * v).imag() / determinant;
             v -= std::round(x) * a + std::round(y) * b;
             if (std::abs(v) > tiny) std::swap(v, b);
         }

@@ -54,8 +54,8 @@ struct ProgramResult {
 };
 
 /// Runs ricci with `arguments`; with `kill_after` (milliseconds) sends `signal` then.
-inline ProgramResult run_ricci(const TemporaryFolder& folder, const std::vector<std::string>& arguments, int kill_after = -1,
-                               int signal = SIGKILL) {
+inline ProgramResult run_ricci(const TemporaryFolder& folder, const std::vector<std::string>& arguments,
+                               int kill_after = -1, int signal = SIGKILL) {
     const std::string out = folder / "stdout.txt", err = folder / "stderr.txt";
     std::vector<std::string> words{RICCI_PROGRAM};
     words.insert(words.end(), arguments.begin(), arguments.end());

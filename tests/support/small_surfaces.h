@@ -13,7 +13,9 @@
 
 namespace ricci::testing {
 
-inline std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+inline std::size_t at(Index i) {
+    return static_cast<std::size_t>(i);
+}
 
 inline SurfaceMesh octahedron() {
     return make_surface_mesh(
@@ -23,16 +25,16 @@ inline SurfaceMesh octahedron() {
 }
 
 inline std::vector<Triangle> icosahedron_triangles() {
-    return {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-            {11, 10, 2}, {10, 7, 6}, {7, 1, 8},   {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-            {3, 8, 9},   {4, 9, 5},  {2, 4, 11},  {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+    return {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+            {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+            {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
 }
 
 /// Every vertex displaced by up to `noise` in each coordinate.
 inline SurfaceMesh icosahedron(double noise = 0.0, std::uint64_t seed = 1) {
     const double t = std::numbers::phi;
-    std::vector<Point> points = {{-1, t, 0}, {1, t, 0}, {-1, -t, 0}, {1, -t, 0}, {0, -1, t},  {0, 1, t},
-                                 {0, -1, -t}, {0, 1, -t}, {t, 0, -1}, {t, 0, 1},  {-t, 0, -1}, {-t, 0, 1}};
+    std::vector<Point> points = {{-1, t, 0},  {1, t, 0},  {-1, -t, 0}, {1, -t, 0}, {0, -1, t},  {0, 1, t},
+                                 {0, -1, -t}, {0, 1, -t}, {t, 0, -1},  {t, 0, 1},  {-t, 0, -1}, {-t, 0, 1}};
     Random random(seed);
     for (Point& p : points)
         for (double& x : p) x += random.uniform(-noise, noise);
@@ -51,7 +53,8 @@ inline std::vector<Triangle> torus_grid(Index n, Index m) {
     return triangles;
 }
 
-/// A torus of revolution, R = 2, r = 1, whose vertices are displaced at random: no two of its edges are alike.
+/// A torus of revolution, R = 2, r = 1, whose vertices are displaced at random: no two of its edges are
+/// alike.
 inline SurfaceMesh bumpy_torus(Index n, Index m, double noise = 0.05, std::uint64_t seed = 1) {
     Random random(seed);
     std::vector<Point> points;
@@ -107,12 +110,13 @@ IntrinsicTriangulation<Real> one_vertex_torus(Real a, Real b, Real c) {
     return t;
 }
 
-/// A sphere of two faces whose outer halfedges are glued to each other within each face: a flip turns the edge between
-/// them into the edge between two cones. Face 0: 0 -> 1 (to face 1), 1 -> 2 glued to 2 -> 1 ... see the numbers.
+/// A sphere of two faces whose outer halfedges are glued to each other within each face: a flip turns the
+/// edge between them into the edge between two cones. Face 0: 0 -> 1 (to face 1), 1 -> 2 glued to 2 -> 1 ...
+/// see the numbers.
 template <class Real>
 IntrinsicTriangulation<Real> folded_square(Real diagonal_half) {
-    // The square (0, 1, 2, 3) cut along 0-2, each corner fold gluing neighbouring sides: 0-1 with 2-1, 0-3 with 2-3.
-    // Then 0 and 2 are one vertex and the edge between the faces is a loop.
+    // The square (0, 1, 2, 3) cut along 0-2, each corner fold gluing neighbouring sides: 0-1 with 2-1, 0-3
+    // with 2-3. Then 0 and 2 are one vertex and the edge between the faces is a loop.
     IntrinsicTriangulation<Real> t;
     // face 0: 0 -> 1 -> 0' -> 0; face 1: 0 -> 0' -> 2(=old 3) -> 0, with 0' = 0.
     t.connectivity = connectivity_from_gluing({0, 1, 0, 0, 0, 2}, {1, 0, 3, 2, 5, 4}, 3);
@@ -121,7 +125,8 @@ IntrinsicTriangulation<Real> folded_square(Real diagonal_half) {
     return t;
 }
 
-/// The same surface with its vertices renumbered (old v becomes number[v]) and its faces in another order and rotation.
+/// The same surface with its vertices renumbered (old v becomes number[v]) and its faces in another order and
+/// rotation.
 inline SurfaceMesh relabelled(const SurfaceMesh& mesh, const std::vector<Index>& number, Random& random) {
     std::vector<Point> points(mesh.points.size());
     for (std::size_t v = 0; v < points.size(); ++v) points[at(number[v])] = mesh.points[v];
@@ -130,8 +135,7 @@ inline SurfaceMesh relabelled(const SurfaceMesh& mesh, const std::vector<Index>&
     const std::vector<Index> order = random.permutation(static_cast<Index>(old.size()));
     for (std::size_t f = 0; f < old.size(); ++f) {
         const auto turn = random.below(std::size_t{3});
-        for (std::size_t k = 0; k < 3; ++k)
-            triangles[at(order[f])][k] = number[at(old[f][(k + turn) % 3])];
+        for (std::size_t k = 0; k < 3; ++k) triangles[at(order[f])][k] = number[at(old[f][(k + turn) % 3])];
     }
     return make_surface_mesh(std::move(points), triangles);
 }
