@@ -81,22 +81,21 @@ TEST(FlatTorus, DevelopmentReadsAKnownLattice) {
 }
 
 TEST(FlatTorus, ModulusOfTheTorusOfRevolutionConvergesToSecondOrder) {
-    // R/r = 2.5: tau = i sqrt(5.25). Measured errors at 1000, 4000, 16000 faces: see the table in the
-    // messages of a failure; the order is log2 of their ratio, since the edge halves.
+    // R/r = 2.5: tau = i sqrt(5.25). Measured errors at about 1000, 4000 and 16000 faces, and the order from
+    // first to last:
+    //   regular      2.184e-2  5.435e-3  1.299e-3   2.04
+    //   jitter 0.25  2.232e-2  5.607e-3  1.334e-3   2.03
+    //   jitter 0.45  2.351e-2  6.043e-3  1.420e-3   2.03
+    // (without the isometric Delaunay start the jittered ones stall: 4.5e-2, 4.2e-2, 4.2e-2 at 0.45). Jitter
+    // is random, so its order may miss 2 by what one draw changes: some tenths.
     const double exact = std::sqrt(5.25);
     for (const double jitter : {0.0, 0.25, 0.45}) {
         std::vector<double> errors;
-        for (const Index faces : {1000, 4000, 16000}) {
-            const Complex tau = modulus_of(flatten(torus(faces, jitter)));
-            errors.push_back(std::abs(tau - Complex(0.0, exact)));
-            RecordProperty("error_" + std::to_string(jitter) + "_" + std::to_string(faces),
-                           std::to_string(errors.back()));
-            std::printf("jitter %g faces %d error %.3e\n", jitter, faces, errors.back());
-        }
-        EXPECT_LT(errors[2], 1.5e-3);
+        for (const Index faces : {1000, 4000, 16000})
+            errors.push_back(std::abs(modulus_of(flatten(torus(faces, jitter))) - Complex(0.0, exact)));
+        EXPECT_LT(errors[2], 1.5e-3) << "jitter " << jitter;
         const double order = 0.5 * std::log2(errors[0] / errors[2]);
-        std::printf("order %.3f\n", order);
-        EXPECT_GT(order, jitter == 0.0 ? 1.9 : 1.6);
+        EXPECT_NEAR(order, 2.0, jitter == 0.0 ? 0.1 : 0.3) << "jitter " << jitter;
     }
 }
 
