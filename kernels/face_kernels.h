@@ -38,8 +38,9 @@ struct FaceFields {
 };
 
 /// Evaluates all faces. Returns how many faces are no triangle of the geometry (broken triangle inequality;
-/// on the sphere also a chord of 2 or more): their angles are the continuous extension 0, 0, pi and their
-/// derivatives are not finite. Runs blocks of faces in parallel where `parallel`; the same bits either way.
+/// on the sphere also a chord of 2 or more): their angles are the continuous extension 0, 0, pi (on the
+/// sphere, with a perimeter beyond 2 pi: pi, pi, pi) and their derivatives are not finite. Runs blocks of
+/// faces in parallel where `parallel`; the same bits either way.
 template <class Real>
 std::int64_t evaluate_faces(Geometry geometry, const ScaledChords<Real>& chords, const FaceFields<Real>& out,
                             bool parallel);

@@ -111,9 +111,6 @@ SweepWorker::SweepWorker(std::shared_ptr<const SweepSurface> surface)
 SweepWorker::~SweepWorker() = default;
 
 SweepSolve SweepWorker::solve(Index vertex, const std::function<std::optional<Status>()>& interrupted) {
-    const std::vector<Index>& candidates = shared_->candidates_;
-    if (!std::binary_search(candidates.begin(), candidates.end(), vertex))
-        throw std::invalid_argument(fmt::format("vertex {} is no interior vertex of the surface", vertex));
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
     if (!std::binary_search(shared_->candidates_.begin(), shared_->candidates_.end(), vertex))

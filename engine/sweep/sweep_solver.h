@@ -76,7 +76,6 @@ class SweepWorker {
     explicit SweepWorker(std::shared_ptr<const SweepSurface> surface);
     ~SweepWorker();
 
-    /// `vertex`: one of the surface's candidates, else std::invalid_argument.
     /// `vertex`: one of the surface's candidates (std::invalid_argument otherwise).
     SweepSolve solve(Index vertex, const std::function<std::optional<Status>()>& interrupted);
 

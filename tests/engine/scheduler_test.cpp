@@ -267,6 +267,7 @@ TEST(SampleVertices, FollowsSplitMix64) {
 
 TEST(SampleVertices, DrawsWithoutReplacementAscendingAndSmallerSamplesAreParts) {
     std::vector<Index> candidates;
+    candidates.reserve(500);
     for (Index v = 0; v < 500; ++v) candidates.push_back(3 * v + 1);
     for (const std::uint64_t seed : {0U, 1U, 77U}) {
         std::vector<Index> previous;

@@ -17,7 +17,6 @@
 #include "engine/sweep/sweep_solver.h"
 #include "engine/verify/recompute.h"
 #include "io/mesh/mesh_file.h"
-#include "tests/support/random.h"
 #include "tests/support/small_surfaces.h"
 #include "tests/support/test_data.h"
 
@@ -26,7 +25,6 @@ namespace {
 
 using std::numbers::pi;
 using testing::at;
-using testing::Random;
 
 SurfaceMesh made(const std::string& name, Index faces, double jitter = 0.0) {
     GenerateOptions options;
@@ -115,6 +113,7 @@ TEST(Sweep, SymmetricSurfacesHaveSymmetricDistortion) {
 TEST(Sweep, BitsDependOnTheVertexAlone) {
     const auto surface = std::make_shared<SweepSurface>(made("eight", 700, 0.3), SweepOptions{});
     std::vector<Index> vertices;
+    vertices.reserve(40);
     for (Index v = 0; v < 40; ++v) vertices.push_back(8 * v);
     ASSERT_LT(vertices.back(), surface->mesh().connectivity.vertex_count);
     SweepWorker first(surface);
@@ -145,6 +144,7 @@ TEST(Sweep, WorkersMadeAtTheSameTimeAgree) {
     for (int round = 0; round < 3; ++round) {
         std::vector<SweepSolve> solves(4);
         std::vector<std::thread> threads;
+        threads.reserve(solves.size());
         for (SweepSolve& solve : solves)
             threads.emplace_back([&] { solve = SweepWorker(surface).solve(17, {}); });
         for (std::thread& thread : threads) thread.join();

@@ -16,7 +16,6 @@ namespace ricci {
 namespace {
 
 using std::numbers::pi;
-using testing::at;
 
 FlowSurface surface_of(const SurfaceMesh& mesh) {
     return make_flow_surface(mesh, false, true);
