@@ -60,7 +60,7 @@ Index HessianAssembler::find(Index i, Index j) const {
     return found != end && *found == row ? static_cast<Index>(found - pattern_.row.begin()) : kAbsent;
 }
 
-bool HessianAssembler::reserve(std::vector<std::pair<Index, Index>> pairs) {
+bool HessianAssembler::reserve(std::span<const std::pair<Index, Index>> pairs) {
     std::vector<std::pair<Index, Index>> fresh;  // (column, row)
     for (const auto& [a, b] : pairs) {
         const Index i = unknown_[at(a)], j = unknown_[at(b)];
@@ -110,7 +110,7 @@ bool HessianAssembler::follow_flips(const Connectivity& c, std::span<const Index
     for (const Index f : touched_faces) seeds.push_back(c.tail[at(3 * f)]);
     const auto likely = likely_flips(c, seeds, 0, 1);
     missing.insert(missing.end(), likely.begin(), likely.end());
-    reserve(std::move(missing));
+    reserve(missing);
     update([](Index) {});
     return true;
 }

@@ -19,7 +19,7 @@ class HessianAssembler {
 
     /// Adds entries (pairs of vertices) to the pattern, where they are not in it yet: room for edges that
     /// flips may make. Returns whether the pattern grew.
-    bool reserve(std::vector<std::pair<Index, Index>> pairs);
+    bool reserve(std::span<const std::pair<Index, Index>> pairs);
 
     /// Follows flips: `touched_faces` are the faces of all edges flipped since. Returns true when the pattern
     /// had to grow; it then gets room for the next flips nearby as well.
