@@ -145,7 +145,8 @@ bool NewtonSolver::factorize(SolveOutcome& outcome) {
     double scale = 0.0;
     for (const Index p : assembler_.diagonal_positions()) scale = std::max(scale, std::abs(values_[at(p)]));
     const std::vector<double> unshifted = values_;
-    for (double shift = 1e-14; shift <= 1.0; shift *= 100.0) {
+    double shift = 1e-14;
+    for (int attempt = 0; attempt < 8; ++attempt, shift *= 100.0) {
         values_ = unshifted;
         for (const Index p : assembler_.diagonal_positions()) values_[at(p)] += shift * scale;
         if (!solver_->factorize(values_)) continue;
