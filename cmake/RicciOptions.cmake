@@ -32,7 +32,6 @@ if(RICCI_SANITIZE)
     target_compile_definitions(ricci_options INTERFACE RICCI_NO_CLONES)
 endif()
 
-set(ricci_targets "" CACHE INTERNAL "")
 function(ricci_add_room name sources)
     add_library(ricci_${name} STATIC ${sources})
     add_library(ricci::${name} ALIAS ricci_${name})

@@ -142,8 +142,7 @@ int flow(const FlowArguments& a, const CommonOptions& common) {
     if (several && (!options.cones.empty() || options.target == TargetKind::values))
         throw UsageError("cones and target files name vertices of one surface; this input has " +
                          std::to_string(loaded.components.size()) + " components");
-    const bool need_parallel = common.resolved_threads() > 1;
-    options.parallel = need_parallel;
+    options.parallel = common.resolved_threads() > 1;
     std::unique_ptr<RunStore> store;
     std::vector<std::string> names;
     if (!a.output.empty())

@@ -24,24 +24,20 @@ constexpr double kResidualSlack = 1e-9;
 constexpr double kDistortionSlack = 1e-9;  // relative
 
 /// How the sweep was solved, from the stored configuration.
-struct SweepSetting {
+SweepOptions options_of(const StoredRun& run) {
     SweepOptions options;
-};
-
-SweepSetting setting_of(const StoredRun& run) {
-    SweepSetting setting;
     const toml::table root = toml::parse(run.info.config);
     const auto text = [&](const char* key, const std::string& fallback) {
         return root["solve"][key].value_or(fallback);
     };
-    setting.options.scheme = parse_scheme(text("scheme", "vertex-scaling"));
+    options.scheme = parse_scheme(text("scheme", "vertex-scaling"));
     const std::string boundary = text("boundary", "geodesic");
-    setting.options.boundary = parse_boundary(boundary.empty() ? "geodesic" : boundary);
-    setting.options.delaunay = parse_delaunay(text("delaunay", "isometric"));
-    setting.options.densify = root["solve"]["densify"].value_or(false);
+    options.boundary = parse_boundary(boundary.empty() ? "geodesic" : boundary);
+    options.delaunay = parse_delaunay(text("delaunay", "isometric"));
+    options.densify = root["solve"]["densify"].value_or(false);
     const std::string cone = text("cone_curvature", "");
-    if (!cone.empty()) setting.options.cone_curvature = parse_curvature(cone);
-    return setting;
+    if (!cone.empty()) options.cone_curvature = parse_curvature(cone);
+    return options;
 }
 
 Recomputed recompute(const SurfaceMesh& mesh, std::span<const double> u, Scheme scheme, Geometry geometry,
@@ -82,7 +78,7 @@ void judge(const Recomputed& r, RecomputedSolution& s) {
     s.sound = s.message.empty();
 }
 
-RecomputedSolution check_kept(const StoredItem& item, const KeptFactor& kept, const SweepSetting& setting) {
+RecomputedSolution check_kept(const StoredItem& item, const KeptFactor& kept, const SweepOptions& options) {
     RecomputedSolution s;
     const StoredSweep& sweep = *item.sweep;
     s.item = item.item.name;
@@ -92,17 +88,17 @@ RecomputedSolution check_kept(const StoredItem& item, const KeptFactor& kept, co
     s.distortion_stored = kept.area_distortion;
     for (const SweepRow& row : sweep.rows)
         if (row.vertex == kept.vertex) s.residual_stored = row.residual_max;
-    if (setting.options.densify) {
+    if (options.densify) {
         s.message = "solved on a densified mesh, which is not stored: cannot be recomputed";
         return s;
     }
     const SurfaceMesh mesh = surface_of(item.item);
     std::vector<double> target(kept.conformal_factor.size(), 0.0);
     target[static_cast<std::size_t>(kept.vertex)] =
-        setting.options.cone_curvature.value_or(2.0 * std::numbers::pi * item.item.euler_characteristic);
-    const Recomputed r = recompute(mesh, kept.conformal_factor, setting.options.scheme, Geometry::euclidean,
-                                   setting.options.boundary, setting.options.delaunay, 1.0);
-    s.residual_recomputed = residual(mesh, r, target, setting.options.boundary);
+        options.cone_curvature.value_or(2.0 * std::numbers::pi * item.item.euler_characteristic);
+    const Recomputed r = recompute(mesh, kept.conformal_factor, options.scheme, Geometry::euclidean,
+                                   options.boundary, options.delaunay, 1.0);
+    s.residual_recomputed = residual(mesh, r, target, options.boundary);
     judge(r, s);
     return s;
 }
@@ -133,13 +129,13 @@ RecomputedSolution check_flow(const StoredItem& item, bool delaunay) {
 }  // namespace
 
 std::vector<RecomputedSolution> recompute_solutions(const StoredRun& run, int threads) {
-    const SweepSetting setting = setting_of(run);
+    const SweepOptions options = options_of(run);
     std::vector<std::function<RecomputedSolution()>> jobs;
     for (const StoredItem& item : run.items) {
         if (item.sweep)
             for (const KeptFactor& kept : item.sweep->kept)
-                jobs.emplace_back([&] { return check_kept(item, kept, setting); });
-        if (item.flow) jobs.emplace_back([&] { return check_flow(item, setting.options.delaunay); });
+                jobs.emplace_back([&] { return check_kept(item, kept, options); });
+        if (item.flow) jobs.emplace_back([&] { return check_flow(item, options.delaunay); });
     }
     std::vector<RecomputedSolution> results(jobs.size());
     with_thread_limit(threads, [&] {
