@@ -4,6 +4,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <new>
 #include <stdexcept>
@@ -24,6 +25,46 @@ void keep_blas_serial() {
         return true;
     }();
     static_cast<void>(done);
+}
+
+SupernodalFactor from_supernodes(const cholmod_factor& factor) {
+    const auto* first = static_cast<const int*>(factor.super);
+    const auto* row_begin = static_cast<const int*>(factor.pi);
+    const auto* value_begin = static_cast<const int*>(factor.px);
+    const auto* row = static_cast<const int*>(factor.s);
+    const auto* value = static_cast<const double*>(factor.x);
+    const std::size_t count = factor.nsuper + 1;
+    SupernodalFactor shared;
+    shared.first_column.assign(first, first + count);
+    shared.row_begin.assign(row_begin, row_begin + count);
+    shared.value_begin.assign(value_begin, value_begin + count);
+    shared.row.assign(row, row + shared.row_begin.back());
+    shared.value.assign(value, value + shared.value_begin.back());
+    return shared;
+}
+
+/// Of a simplicial factor: every column is a supernode.
+SupernodalFactor from_columns(const cholmod_factor& factor) {
+    const auto* begin = static_cast<const int*>(factor.p);
+    const auto* entries = static_cast<const int*>(factor.nz);
+    const auto* row = static_cast<const int*>(factor.i);
+    const auto* value = static_cast<const double*>(factor.x);
+    SupernodalFactor shared;
+    for (std::size_t j = 0; j < factor.n; ++j) {
+        // L D L^T keeps D on the diagonal of L, whose own is one.
+        const double d = value[begin[j]], root = std::sqrt(d);
+        if (factor.is_ll == 0 && !(d > 0.0)) throw std::logic_error("no Cholesky factor to share");
+        shared.first_column.push_back(static_cast<Index>(j));
+        shared.row_begin.push_back(static_cast<std::int64_t>(shared.row.size()));
+        for (int k = begin[j]; k < begin[j] + entries[j]; ++k) {
+            shared.row.push_back(row[k]);
+            shared.value.push_back(factor.is_ll != 0 ? value[k] : k == begin[j] ? root : root * value[k]);
+        }
+    }
+    shared.first_column.push_back(static_cast<Index>(factor.n));
+    shared.row_begin.push_back(static_cast<std::int64_t>(shared.row.size()));
+    shared.value_begin = shared.row_begin;
+    return shared;
 }
 
 class CholmodSolver final : public SymmetricSolver {
@@ -96,6 +137,15 @@ class CholmodSolver final : public SymmetricSolver {
             throw std::bad_alloc();
         const auto* x = static_cast<const double*>(solution_->x);
         std::copy(x, x + solution.size(), solution.begin());
+    }
+
+    [[nodiscard]] SupernodalFactor supernodal_factor() const override {
+        if (factor_ == nullptr || factor_->xtype != CHOLMOD_REAL || factor_->minor != factor_->n)
+            throw std::logic_error("no Cholesky factor to share");
+        SupernodalFactor shared = factor_->is_super != 0 ? from_supernodes(*factor_) : from_columns(*factor_);
+        const auto* permutation = static_cast<const int*>(factor_->Perm);
+        shared.permutation.assign(permutation, permutation + factor_->n);
+        return shared;
     }
 
     [[nodiscard]] std::int64_t factor_bytes() const override { return factor_bytes_; }

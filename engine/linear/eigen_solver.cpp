@@ -2,6 +2,8 @@
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCholesky>
+#include <cmath>
+#include <stdexcept>
 #include <string>
 
 #include "engine/linear/symmetric_solver.h"
@@ -24,6 +26,7 @@ class EigenSolver final : public SymmetricSolver {
     void use_ordering(std::span<const Index> /*ordering*/) override {}
 
     void analyze(const SymmetricPattern& pattern) override {
+        factorized_ = false;
         pattern_ = pattern;
         values_.assign(pattern_.row.size(), 1.0);
         factor_.analyzePattern(view());
@@ -32,13 +35,43 @@ class EigenSolver final : public SymmetricSolver {
     bool factorize(std::span<const double> values) override {
         values_.assign(values.begin(), values.end());
         factor_.factorize(view());
-        return factor_.info() == Eigen::Success && (!positive_ || factor_.vectorD().minCoeff() > 0.0);
+        factorized_ = factor_.info() == Eigen::Success && (!positive_ || factor_.vectorD().minCoeff() > 0.0);
+        return factorized_;
     }
 
     void solve(std::span<const double> rhs, std::span<double> solution) override {
         const Eigen::Map<const Eigen::VectorXd> b(rhs.data(), static_cast<Eigen::Index>(rhs.size()));
         const Eigen::VectorXd x = factor_.solve(b);
         Eigen::Map<Eigen::VectorXd>(solution.data(), x.size()) = x;
+    }
+
+    [[nodiscard]] SupernodalFactor supernodal_factor() const override {
+        if (!factorized_ || !(factor_.vectorD().minCoeff() > 0.0))
+            throw std::logic_error("no Cholesky factor to share");
+        const auto& l = factor_.matrixL().nestedExpression();  // strictly below its diagonal of ones
+        const auto n = static_cast<Index>(l.cols());
+        SupernodalFactor shared;
+        for (Index j = 0; j < n; ++j) {
+            const double root = std::sqrt(factor_.vectorD()[j]);
+            shared.first_column.push_back(j);
+            shared.row_begin.push_back(static_cast<std::int64_t>(shared.row.size()));
+            shared.row.push_back(j);
+            shared.value.push_back(root);
+            for (SparseMatrix::InnerIterator entry(l, j); entry; ++entry) {
+                if (entry.row() <= j) continue;
+                shared.row.push_back(static_cast<Index>(entry.row()));
+                shared.value.push_back(root * entry.value());
+            }
+        }
+        shared.first_column.push_back(n);
+        shared.row_begin.push_back(static_cast<std::int64_t>(shared.row.size()));
+        shared.value_begin = shared.row_begin;
+        // Eigen's P takes unknown i to position indices()[i].
+        shared.permutation.resize(static_cast<std::size_t>(n));
+        const auto& position = factor_.permutationP().indices();
+        for (Index i = 0; i < n; ++i)
+            shared.permutation[static_cast<std::size_t>(position.size() == 0 ? i : position[i])] = i;
+        return shared;
     }
 
     [[nodiscard]] std::int64_t factor_bytes() const override {
@@ -56,7 +89,7 @@ class EigenSolver final : public SymmetricSolver {
                 values_.data()};
     }
 
-    bool positive_;
+    bool positive_, factorized_ = false;
     SymmetricPattern pattern_;
     std::vector<double> values_;
     Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>> factor_;

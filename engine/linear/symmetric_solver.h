@@ -28,6 +28,19 @@ enum class Ordering : std::uint8_t { minimum_degree, nested_dissection };
 /// pivoting, fails on a zero pivot only; no bound on its growth, so callers check residuals.
 enum class Definiteness : std::uint8_t { positive, indefinite };
 
+/// A factor L of P A P^T = L L^T by supernodes: groups of successive columns (in elimination order) with the
+/// same rows below. Supernode s has columns [first_column[s], first_column[s+1]) and rows row[row_begin[s]
+/// ... row_begin[s+1]), the first of which are its own columns. Its entries lie column by column (as many per
+/// column as it has rows) from value_begin[s], with the strict upper triangle unused.
+struct SupernodalFactor {
+    std::vector<Index> first_column;        // S+1
+    std::vector<std::int64_t> row_begin;    // S+1
+    std::vector<Index> row;                 // in elimination order, ascending within a supernode
+    std::vector<std::int64_t> value_begin;  // S+1
+    std::vector<double> value;
+    std::vector<Index> permutation;  // position in elimination order -> unknown
+};
+
 /// One factor and its workspace; not thread-safe, one per thread.
 class SymmetricSolver {
   public:
@@ -48,6 +61,9 @@ class SymmetricSolver {
     virtual bool factorize(std::span<const double> values) = 0;
     /// Solves with the last factor. `rhs`, `solution`: n each (may be the same span).
     virtual void solve(std::span<const double> rhs, std::span<double> solution) = 0;
+    /// A copy of the last factor, for sharing. Throws std::logic_error where there is none or the matrix is
+    /// not positive definite.
+    [[nodiscard]] virtual SupernodalFactor supernodal_factor() const = 0;
     /// Bytes of the factor, known after the analysis.
     [[nodiscard]] virtual std::int64_t factor_bytes() const = 0;
 };
