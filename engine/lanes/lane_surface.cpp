@@ -13,6 +13,9 @@ std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
 }
 
+/// Below, a patch would be most of the surface, and Newton's method on all of it costs a millisecond.
+constexpr Index kLeastUnknowns = 256;
+
 template <class T>
 std::int64_t bytes_of(const std::vector<T>& v) {
     return static_cast<std::int64_t>(v.size() * sizeof(T));
@@ -67,6 +70,7 @@ std::int64_t LaneSurface::bytes() const {
 std::unique_ptr<const LaneSurface> make_lane_surface(const FlowSurface& surface,
                                                      const CurvatureTarget& target,
                                                      std::span<const Index> ordering) {
+    if (target.unknown_count < kLeastUnknowns) return nullptr;
     ScaledMetric<long double> metric(surface, Geometry::euclidean, false);
     const std::vector<double> zero(target.curvature.size(), 0.0);
     if (!metric.move_to(zero) || metric.flips() > 0 || !metric.evaluate(true)) return nullptr;

@@ -40,8 +40,8 @@ struct LaneSurface {
     [[nodiscard]] std::int64_t bytes() const;
 };
 
-/// Nothing where the surface does not suit lanes: a face that is no triangle at u = 0, or a Hessian there
-/// that has no Cholesky factor.
+/// Nothing where the surface does not suit lanes: too small to leave anything around a patch, a face that is
+/// no triangle at u = 0, or a Hessian there that has no Cholesky factor.
 std::unique_ptr<const LaneSurface> make_lane_surface(const FlowSurface& surface,
                                                      const CurvatureTarget& target,
                                                      std::span<const Index> ordering);

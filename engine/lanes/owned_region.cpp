@@ -242,7 +242,8 @@ bool OwnedRegion::make_core_delaunay(Index first, const LaneArray<double>& shrin
     find_core(first);
     stack_.clear();
     for (const Index f : core_)
-        for (Index h = 3 * f; h < 3 * f + 3; ++h) stack_.push_back(h);
+        for (Index h = 3 * f; h < 3 * f + 3; ++h)
+            if (twin_[at(h)] < h || !in_core_[at(face_of(twin_[at(h)]))]) stack_.push_back(h);  // once
     // A step so long that edges flip without end is too long.
     return flip_stack(shrink, 20 + static_cast<std::int64_t>(core_.size()));
 }
@@ -272,6 +273,7 @@ void OwnedRegion::find_core(Index first) {
     if (!core_stale_ && core_first_ == first) return;
     core_.clear();
     rest_.clear();
+    in_core_.resize(at(face_count()));
     for (Index f = 0; f < face_count(); ++f) {
         bool inside = false;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -279,6 +281,7 @@ void OwnedRegion::find_core(Index first) {
             inside = inside || (v >= first && v < patch_);
         }
         (inside ? core_ : rest_).push_back(f);
+        in_core_[at(f)] = inside ? 1 : 0;
     }
     core_stale_ = false;
     core_first_ = first;

@@ -92,6 +92,7 @@ class OwnedRegion {
 
     // Faces around the patch, and what evaluate() says of faces.
     std::vector<Index> core_, rest_;
+    std::vector<std::uint8_t> in_core_;
     bool core_stale_ = true;   // core_ and rest_ are out of date
     bool core_fresh_ = false;  // angle_ and cot_ of core_ are up to date
     Index core_first_ = 0;
