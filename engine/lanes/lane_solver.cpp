@@ -235,7 +235,7 @@ void LaneSolver::follow_lanes() {
         region.load(u_, shrink_);
         if (lane->steps == 0) {
             lane->sound = region.relax_first(shrink_);
-            for (int halving = 0; !lane->sound && halving < 8; ++halving) {
+            for (int halving = 0; !lane->sound && halving < 8 && !region.exhausted(); ++halving) {
                 shorten_step(*lane);
                 region.load(u_, shrink_);
                 lane->sound = region.relax_first(shrink_);
@@ -244,7 +244,7 @@ void LaneSolver::follow_lanes() {
             const double goal = std::max(1e-2 * lane->residual, 1e-2 * options_.tolerance);
             lane->sound = region.relax(goal, false, shrink_) || region.relax(goal, true, shrink_);
             // A global step that breaks triangles is too long.
-            for (int halving = 0; !lane->sound && halving < 6; ++halving) {
+            for (int halving = 0; !lane->sound && halving < 6 && !region.exhausted(); ++halving) {
                 shorten_step(*lane);
                 region.load(u_, shrink_);
                 lane->sound = region.relax(goal, true, shrink_);

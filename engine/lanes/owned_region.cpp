@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "kernels/squared_triangles.h"
+#include "kernels/triangle.h"
 #include "kernels/vector_math.h"
 
 namespace ricci {
@@ -51,6 +52,11 @@ std::int64_t OwnedRegion::bytes() const {
                                      skyline_.capacity() * sizeof(double));
 }
 
+bool OwnedRegion::exhausted() const {
+    // Several times what solves that end well need; beyond, Newton's method on the whole surface is cheaper.
+    return work_ + flips_ > 200000 + 4 * static_cast<std::int64_t>(surface_->faces.face_count());
+}
+
 void OwnedRegion::clear() {
     for (const Index row : row_) local_vertex_[at(row)] = -1;
     for (std::size_t h = 0; h < tail_.size(); ++h)
@@ -70,6 +76,7 @@ void OwnedRegion::clear() {
     patch_ = 0;
     flips_ = 0;
     newton_steps_ = 0;
+    work_ = 0;
     factor_first_ = -1;
     core_stale_ = true;
 }
@@ -288,6 +295,19 @@ void OwnedRegion::find_core(Index first) {
     core_fresh_ = false;
 }
 
+bool OwnedRegion::evaluate_thin(std::size_t h) {
+    using Real = long double;
+    Real length[3];
+    for (std::size_t k = 0; k < 3; ++k)  // relative, so the third corner's factor is left out
+        length[k] = Real(chord_[h + k]) * std::sqrt(Real(shrink_[at(tail_[h + (k + 2) % 3])]));
+    const TriangleTerms<Real> t = triangle_terms<0>(length[0], length[1], length[2]);
+    for (std::size_t k = 0; k < 3; ++k) {
+        angle_[h + k] = static_cast<double>(std::atan2(t.root, t.numerator[k]));
+        cot_[h + k] = static_cast<double>(t.numerator[k] / t.root);
+    }
+    return t.radicand > Real(0);
+}
+
 bool OwnedRegion::evaluate(std::span<const Index> faces) {
     angle_.resize(tail_.size());
     cot_.resize(tail_.size());
@@ -305,11 +325,16 @@ bool OwnedRegion::evaluate(std::span<const Index> faces) {
         evaluate_triangles(block);
         for (std::size_t i = 0; i < count; ++i) {
             const std::size_t h = 3 * at(faces[begin + i]);
+            // Squares of the sides lose half the digits of a thin triangle's area.
+            const double largest = std::max({block.square[0][i], block.square[1][i], block.square[2][i]});
+            if (!(block.radicand[i] > 1e-6 * largest * largest)) {
+                good = evaluate_thin(h) && good;
+                continue;
+            }
             for (std::size_t k = 0; k < 3; ++k) {
                 angle_[h + k] = block.angle[k][i];
                 cot_[h + k] = block.cot[k][i];
             }
-            good = good && block.radicand[i] > 0.0;
         }
     }
     return good;
@@ -413,13 +438,13 @@ bool OwnedRegion::factorize(Index first) {
     });
     if (!factor_skyline(skyline_first_, skyline_begin_, skyline_.data(), n)) return false;
     factor_first_ = first;
-    ++factorizations_;
     return true;
 }
 
 bool OwnedRegion::settle(Index first, bool flips, const LaneArray<double>& shrink) {
-    if (flips && !make_core_delaunay(first, shrink)) return false;
+    if (exhausted() || (flips && !make_core_delaunay(first, shrink))) return false;
     find_core(first);
+    work_ += static_cast<std::int64_t>(core_.size());
     return evaluate(core_);
 }
 

@@ -51,7 +51,8 @@ class OwnedRegion {
     [[nodiscard]] std::int64_t flips() const { return flips_; }
     [[nodiscard]] Index face_count() const { return static_cast<Index>(tail_.size() / 3); }
     [[nodiscard]] Index patch_size() const { return patch_; }
-    [[nodiscard]] int factorizations() const { return factorizations_; }
+    /// More has been done on the patch than a solve is worth; nothing moves any more.
+    [[nodiscard]] bool exhausted() const;
     [[nodiscard]] int newton_steps() const { return newton_steps_; }
     [[nodiscard]] std::int64_t bytes() const;
 
@@ -68,6 +69,7 @@ class OwnedRegion {
     void blunt(int rings);
     void find_core(Index first);
     bool evaluate(std::span<const Index> faces);
+    bool evaluate_thin(std::size_t h);
     double patch_residual(Index first);
     bool factorize(Index first);
 
@@ -105,7 +107,8 @@ class OwnedRegion {
     std::vector<Index> skyline_first_, skyline_begin_;
     std::vector<double> skyline_;
     std::int64_t flips_ = 0;
-    int newton_steps_ = 0, factorizations_ = 0;
+    int newton_steps_ = 0;
+    std::int64_t work_ = 0;    // faces evaluated around the patch
     Index factor_first_ = -1;  // the factor is of the patch from here on
 };
 
