@@ -64,7 +64,22 @@ void print_table(const std::vector<ItemSummary>& summaries) {
     }
 }
 
-/// What would run: one solve per item is timed, its memory predicted.
+/// Seconds of a worker per solve, from as many solves as it has under way at a time.
+double probe_seconds(const SweepTask& task) {
+    SweepWorker worker(task.surface);
+    const std::size_t count = task.vertices.size(),
+                      probes = std::min(count, static_cast<std::size_t>(std::max(task.surface->lanes(), 1)));
+    std::size_t given = 0;
+    double seconds = 0.0;
+    const auto next = [&]() -> std::optional<Index> {
+        if (given == probes) return std::nullopt;
+        return task.vertices[(2 * given++ + 1) * count / (2 * probes)];
+    };
+    worker.run({next, [&](const SweepSolve& solve) { seconds += solve.seconds; }, {}});
+    return seconds / static_cast<double>(std::max<std::size_t>(probes, 1));
+}
+
+/// What would run: a few solves per item are timed, its memory predicted.
 int dry_run(const SweepConfig& config, const std::vector<std::string>& files, const CommonOptions& common) {
     ProgressLine progress(true);
     SweepRun run(config, files, nullptr, progress);
@@ -73,9 +88,8 @@ int dry_run(const SweepConfig& config, const std::vector<std::string>& files, co
     for (std::size_t f = 0; f < files.size(); ++f) {
         for (const SweepTask& task : run.open(f)) {
             const SweepSurface& surface = *task.surface;
-            SweepWorker worker(task.surface);
-            const SweepSolve probe = worker.solve(task.vertices[task.vertices.size() / 2], {});
-            const double seconds = probe.seconds * static_cast<double>(task.vertices.size()) / threads;
+            const double each = probe_seconds(task);
+            const double seconds = each * static_cast<double>(task.vertices.size()) / threads;
             const double megabytes =
                 static_cast<double>(surface.shared_bytes() + threads * surface.worker_bytes()) / 1e6;
             const std::string name = run.summaries()[task.item].name;
@@ -83,12 +97,12 @@ int dry_run(const SweepConfig& config, const std::vector<std::string>& files, co
             if (common.json) {
                 print_json({{"item", name},
                             {"vertices", task.vertices.size()},
-                            {"seconds_per_solve", probe.seconds},
+                            {"seconds_per_solve", each},
                             {"estimated_seconds", seconds},
                             {"estimated_megabytes", megabytes}});
             } else {
                 fmt::print("{}: {} solves, about {:.3g} s each, {:.3g} s on {} threads, {:.0f} MB\n", name,
-                           task.vertices.size(), probe.seconds, seconds, threads, megabytes);
+                           task.vertices.size(), each, seconds, threads, megabytes);
             }
         }
     }
@@ -148,11 +162,13 @@ SweepConfig merged(const CLI::App& command, const SweepArguments& a) {
     if (given("--tolerance")) c.tolerance = v.tolerance;
     if (given("--max-iterations")) c.max_iterations = v.max_iterations;
     if (given("--densify")) c.densify = v.densify;
+    if (given("--solver")) c.solver = v.solver;
     if (given("--vertices")) c.vertices = v.vertices;
     if (given("--resolutions")) c.resolutions = v.resolutions;
     if (given("--keep")) c.keep = v.keep;
     if (given("--output")) c.output = v.output;
     if (given("--shard")) c.shard = v.shard;
+    if (given("--lanes")) c.lanes = v.lanes;
     if (given("--max-memory")) c.max_memory = v.max_memory;
     if (given("--timeout")) c.timeout = v.timeout;
     c.resume = v.resume;
@@ -184,10 +200,17 @@ void add_sweep(CLI::App& app, CommonOptions& common, Action& action) {
     command->add_option("--delaunay", v.delaunay, "isometric (default), or none");
     command->add_option("--tolerance", v.tolerance, "On max |K - target|, radians; default 1e-10")
         ->check(CLI::PositiveNumber);
-    command->add_option("--max-iterations", v.max_iterations, "Newton steps; 0: 200")
+    command
+        ->add_option("--max-iterations", v.max_iterations,
+                     "Steps of a solve; 0: 200, in lanes 60 and then Newton's method")
         ->check(CLI::NonNegativeNumber);
     command->add_flag("--densify", v.densify,
                       "Refine around each cone and raise its valence (circle packings)");
+    command->add_option("--solver", v.solver,
+                        "lanes (default): several vertices at a time where the scheme is vertex-scaling; or "
+                        "newton: one at a time");
+    command->add_option("--lanes", v.lanes, "Vertices at a time on each thread, 1 to 16; default 16")
+        ->check(CLI::Range(1, kLanes));
     command->add_option("--repair", v.repair, "Changes to make: orient,weld,drop-degenerate");
     command->add_flag("--resume", v.resume, "Continue what an interrupted run finished");
     command->add_flag("--dry-run", a->dry_run, "Only say what would run, with time and memory");

@@ -69,6 +69,10 @@ std::optional<Geometry> parse_geometry(const std::string& text) {
                       std::array{Geometry::euclidean, Geometry::hyperbolic, Geometry::spherical});
 }
 
+SweepSolverKind parse_solver(const std::string& text) {
+    return parse_name("solver", text, std::array{SweepSolverKind::lanes, SweepSolverKind::newton});
+}
+
 bool parse_delaunay(const std::string& text) {
     if (text == "isometric") return true;
     if (text == "none") return false;

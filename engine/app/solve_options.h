@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/flow/flow.h"
+#include "engine/sweep/sweep_solver.h"
 
 namespace ricci::app {
 
@@ -13,7 +14,8 @@ Scheme parse_scheme(const std::string& text);
 Method parse_method(const std::string& text);
 Boundary parse_boundary(const std::string& text);
 std::optional<Geometry> parse_geometry(const std::string& text);  // "auto": unset
-bool parse_delaunay(const std::string& text);                     // "isometric": true, "none": false
+SweepSolverKind parse_solver(const std::string& text);
+bool parse_delaunay(const std::string& text);  // "isometric": true, "none": false
 
 /// "VERTEX:CURVATURE".
 Cone parse_cone(const std::string& text);

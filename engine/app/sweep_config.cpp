@@ -121,6 +121,7 @@ SweepConfig read_sweep_config(const std::string& path) {
     solve("tolerance", c.tolerance);
     solve("max_iterations", c.max_iterations);
     solve("densify", c.densify);
+    solve("solver", c.solver);
     solve.reject_the_rest();
     TableReader sweep(path, root, "sweep");
     sweep.text("vertices", c.vertices);
@@ -131,6 +132,7 @@ SweepConfig read_sweep_config(const std::string& path) {
     run("output", c.output);
     run.text("shard", c.shard);
     run("threads", c.threads);
+    run("lanes", c.lanes);
     run.text("max_memory", c.max_memory);
     run("timeout", c.timeout);
     run.reject_the_rest();
@@ -149,13 +151,15 @@ std::string to_toml(const SweepConfig& c, bool only_what_decides_results) {
                               {"delaunay", c.delaunay},
                               {"tolerance", c.tolerance},
                               {"max_iterations", c.max_iterations},
-                              {"densify", c.densify}}},
+                              {"densify", c.densify},
+                              {"solver", c.solver}}},
         {"sweep", toml::table{{"vertices", c.vertices}, {"resolutions", resolutions}, {"keep", c.keep}}}};
     // A time-out decides which solves fail, a shard which are done at all.
     toml::table run{{"shard", c.shard}, {"timeout", c.timeout}};
     if (!only_what_decides_results) {
         run.insert("output", c.output);
         run.insert("threads", c.threads);
+        run.insert("lanes", c.lanes);
         run.insert("max_memory", c.max_memory);
     }
     root.insert("run", run);
@@ -177,6 +181,10 @@ SweepOptions sweep_options(const SweepConfig& c) {
     if (!(c.tolerance > 0.0)) throw UsageError("tolerance must be positive");
     options.tolerance = c.tolerance;
     options.max_iterations = c.max_iterations;
+    options.solver = parse_solver(c.solver);
+    if (c.lanes < 1 || c.lanes > kLanes)
+        throw UsageError(fmt::format("lanes must be 1 to {}, not {}", kLanes, c.lanes));
+    options.lanes = c.lanes;
     return options;
 }
 

@@ -18,12 +18,14 @@ struct SweepConfig {
     double tolerance = 1e-10;
     std::int32_t max_iterations = 0;
     bool densify = false;
+    std::string solver = "lanes";
     std::string vertices = "all";                      // all | sample:N[:SEED] | FILE
     std::vector<std::string> resolutions = {"input"};  // face counts or "input"
     std::string keep = "best,worst";                   // none | best | worst | best,worst | all | K
     std::string output = "sweep.h5";
     std::string shard;  // i/N, i from 0
     int threads = 0;
+    int lanes = kLanes;
     std::string max_memory;
     double timeout = 0.0;
     bool resume = false;

@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <condition_variable>
 #include <exception>
 #include <list>
 #include <mutex>
-#include <new>
+#include <utility>
 
 #include "kernels/parallel.h"
 
@@ -25,24 +24,23 @@ double seconds_since(Clock::time_point start) {
 /// An item under way.
 struct OpenItem {
     SweepTask task;
-    std::size_t next = 0;        // first vertex not handed out
-    std::size_t solved = 0;      // finished and handed over
-    double solve_seconds = 0.0;  // of those, for the size of the next block
+    int lanes = 0;             // of a worker
+    std::size_t next = 0;      // first vertex not handed out
+    std::size_t solved = 0;    // finished
+    std::size_t recorded = 0;  // finished and handed over
     Clock::time_point opened = Clock::now();
 
     [[nodiscard]] bool has_work() const { return next < task.vertices.size(); }
+    [[nodiscard]] std::int64_t worker_bytes() const { return task.surface->worker_bytes(lanes); }
 };
 
-/// A block of vertices of one item: [begin, end) of task.vertices.
-struct Block {
-    std::shared_ptr<OpenItem> item;
-    std::size_t begin = 0, end = 0;
-};
-
-/// What one thread holds between blocks.
+/// What one thread holds between items.
 struct Seat {
     std::shared_ptr<OpenItem> item;
     std::unique_ptr<SweepWorker> worker;
+    std::size_t under_way = 0;       // vertices
+    std::vector<SweepSolve> solves;  // not handed over yet
+    Clock::time_point handed_over;
 };
 
 /// The queue all threads draw from. Its state is under one mutex; opening items and solving happen outside of
@@ -56,10 +54,9 @@ class Queue {
     void work() {
         Seat seat;
         try {
-            while (auto block = next(seat)) solve(*block, seat);
+            while (find_work(seat)) solve(seat);
         } catch (...) {
-            const std::lock_guard lock(mutex_);
-            if (!error_) error_ = std::current_exception();
+            fail();
         }
         leave(seat);
     }
@@ -71,11 +68,16 @@ class Queue {
   private:
     [[nodiscard]] bool stopped() const { return error_ || (options_->stop && options_->stop()); }
 
+    void fail() {
+        const std::lock_guard lock(mutex_);
+        if (!error_) error_ = std::current_exception();
+    }
+
     void leave(Seat& seat) {
         if (!seat.item) return;
         seat.worker.reset();
         const std::lock_guard lock(mutex_);
-        used_memory_ -= seat.item->task.surface->worker_bytes();
+        used_memory_ -= seat.item->worker_bytes();
         --seats_taken_;
         seat.item.reset();
         changed_.notify_all();
@@ -83,13 +85,14 @@ class Queue {
 
     [[nodiscard]] bool fits(const OpenItem& item) const {
         return options_->max_memory <= 0 || seats_taken_ == 0 ||
-               used_memory_ + item.task.surface->worker_bytes() <= options_->max_memory;
+               used_memory_ + item.worker_bytes() <= options_->max_memory;
     }
 
-    std::optional<Block> next(Seat& seat) {
+    /// Gives the seat an item with vertices to solve. False: there is nothing more to do.
+    bool find_work(Seat& seat) {
         {
             const std::lock_guard lock(mutex_);
-            if (!stopped() && seat.item && seat.item->has_work()) return take(seat.item);
+            if (!stopped() && seat.item && seat.item->has_work()) return true;
         }
         leave(seat);
         std::unique_lock lock(mutex_);
@@ -99,9 +102,9 @@ class Queue {
             });
             if (found != open_items_.end()) {
                 seat.item = *found;
-                used_memory_ += seat.item->task.surface->worker_bytes();
+                used_memory_ += seat.item->worker_bytes();
                 ++seats_taken_;
-                return take(seat.item);
+                return true;
             }
             const bool waiting_items = std::any_of(open_items_.begin(), open_items_.end(),
                                                    [](const auto& item) { return item->has_work(); });
@@ -113,7 +116,7 @@ class Queue {
                 break;
             }
         }
-        return std::nullopt;
+        return false;
     }
 
     /// Opens the next source, outside of the lock; `opening_` keeps the others out, so sources open in order.
@@ -138,10 +141,17 @@ class Queue {
 
     void admit(SweepTask task) {
         const SweepSurface& surface = *task.surface;
-        const std::int64_t need = surface.shared_bytes() + surface.worker_bytes();
+        int lanes = surface.lanes();
+        std::int64_t need = 0;
+        const auto exceeds = [&] {
+            need = surface.shared_bytes() + surface.worker_bytes(lanes);
+            return options_->max_memory > 0 && need > options_->max_memory;
+        };
+        // A step costs about the same for any number of lanes: fewer workers before fewer lanes.
+        while (exceeds() && lanes > 1) --lanes;
         if (task.vertices.empty()) {
             sink_->item_finished(task.item, 0.0);
-        } else if (options_->max_memory > 0 && need > options_->max_memory) {
+        } else if (exceeds()) {
             sink_->item_failed(
                 task.item, Status::out_of_memory,
                 fmt::format("one solve needs about {:.0f} MB, more than --max-memory allows ({:.0f} MB)",
@@ -152,71 +162,74 @@ class Queue {
             solves_known_ += static_cast<std::int64_t>(task.vertices.size());
             open_items_.push_back(std::make_shared<OpenItem>());
             open_items_.back()->task = std::move(task);
+            open_items_.back()->lanes = lanes;
         }
     }
 
-    Block take(const std::shared_ptr<OpenItem>& item) {
-        // About block_seconds of work, but small enough that the end of an item is shared evenly.
-        const std::size_t left = item->task.vertices.size() - item->next;
-        std::size_t size = 4;
-        if (item->solved > 0 && item->solve_seconds > 0.0) {
-            const double mean = item->solve_seconds / static_cast<double>(item->solved);
-            size = static_cast<std::size_t>(std::clamp(options_->block_seconds / mean, 1.0, 1024.0));
-        }
+    void solve(Seat& seat) {
+        if (!seat.worker)
+            seat.worker = std::make_unique<SweepWorker>(seat.item->task.surface, seat.item->lanes);
+        seat.handed_over = Clock::now();
+        seat.worker->run({[&] { return next_vertex(seat); },
+                          [&](SweepSolve solved) { take_in(seat, std::move(solved)); },
+                          [&](double seconds) { return interruption(seconds); }});
+        hand_over(seat);
+    }
+
+    /// The next vertex of the seat's item, as long as the seat holds no more than its share of what is not
+    /// solved yet: near the end of an item the threads keep fewer lanes each, rather than some of them none.
+    std::optional<Index> next_vertex(Seat& seat) {
+        const std::lock_guard lock(mutex_);
+        OpenItem& item = *seat.item;
         const auto threads = static_cast<std::size_t>(std::max(options_->threads, 1));
-        size = std::clamp<std::size_t>(size, 1, std::max<std::size_t>(1, left / threads));
-        Block block{item, item->next, item->next + size};
-        item->next += size;
-        return block;
+        const std::size_t unsolved = item.task.vertices.size() - item.solved;
+        if (stopped() || !item.has_work() || seat.under_way >= (unsolved + threads - 1) / threads)
+            return std::nullopt;
+        ++seat.under_way;
+        return item.task.vertices[item.next++];
     }
 
-    void solve(const Block& block, Seat& seat) {
-        std::vector<SweepSolve> solves;
-        if (!seat.worker) seat.worker = std::make_unique<SweepWorker>(seat.item->task.surface);
-        for (std::size_t k = block.begin; k < block.end; ++k) {
-            const auto start = Clock::now();
-            const auto interrupted = [&]() -> std::optional<Status> {
-                if (options_->stop && options_->stop()) return Status::cancelled;
-                if (options_->timeout_seconds > 0.0 && seconds_since(start) > options_->timeout_seconds)
-                    return Status::timeout;
-                return std::nullopt;
-            };
-            SweepSolve solved;
-            try {
-                solved = seat.worker->solve(block.item->task.vertices[k], interrupted);
-            } catch (const std::bad_alloc&) {
-                solved.vertex = block.item->task.vertices[k];
-                solved.status = Status::out_of_memory;
-                solved.area_distortion = std::nan("");
-                solved.message = "memory ran out during the solve";
-                seat.worker = std::make_unique<SweepWorker>(seat.item->task.surface);
+    std::optional<Status> interruption(double seconds) const {
+        const std::lock_guard lock(mutex_);
+        if (stopped()) return Status::cancelled;
+        if (options_->timeout_seconds > 0.0 && seconds > options_->timeout_seconds) return Status::timeout;
+        return std::nullopt;
+    }
+
+    void take_in(Seat& seat, SweepSolve solved) {
+        const bool dropped = solved.status == Status::cancelled;
+        if (!dropped) seat.solves.push_back(std::move(solved));
+        --seat.under_way;
+        if (dropped) return;
+        // An exception of the sink stops the solver by way of stopped(), not through its frames.
+        try {
+            {
+                const std::lock_guard lock(mutex_);
+                ++seat.item->solved;
+                ++solves_done_;
+                report();
             }
-            if (solved.status == Status::cancelled) break;
-            solves.push_back(std::move(solved));
-            tick();
+            if (seconds_since(seat.handed_over) > options_->block_seconds) hand_over(seat);
+        } catch (...) {
+            fail();
         }
-        hand_over(block, std::move(solves));
     }
 
-    void tick() {
-        const std::lock_guard lock(mutex_);
-        ++solves_done_;
-        report();
-    }
-
-    void hand_over(const Block& block, std::vector<SweepSolve> solves) {
+    void hand_over(Seat& seat) {
+        seat.handed_over = Clock::now();
+        if (seat.solves.empty()) return;
+        std::vector<SweepSolve> solves = std::exchange(seat.solves, {});
         const std::size_t count = solves.size();
-        double seconds = 0.0;
-        for (const SweepSolve& s : solves) seconds += s.seconds;
+        std::sort(solves.begin(), solves.end(),
+                  [](const SweepSolve& a, const SweepSolve& b) { return a.vertex < b.vertex; });
         const std::lock_guard sink_lock(sink_mutex_);
-        if (count > 0) sink_->block_finished(block.item->task.item, std::move(solves));
+        sink_->block_finished(seat.item->task.item, std::move(solves));
         const std::lock_guard lock(mutex_);
-        OpenItem& item = *block.item;
-        item.solved += count;
-        item.solve_seconds += seconds;
-        if (item.solved == item.task.vertices.size()) {
+        OpenItem& item = *seat.item;
+        item.recorded += count;
+        if (item.recorded == item.task.vertices.size()) {
             used_memory_ -= item.task.surface->shared_bytes();
-            std::erase(open_items_, block.item);
+            std::erase(open_items_, seat.item);
             sink_->item_finished(item.task.item, seconds_since(item.opened));
             report();
         }

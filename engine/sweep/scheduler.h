@@ -22,8 +22,8 @@ struct SweepTask {
 struct SchedulerOptions {
     int threads = 1;
     std::int64_t max_memory = 0;   // bytes for surfaces and workers; 0: no limit
-    double timeout_seconds = 0.0;  // per solve; 0: none
-    double block_seconds = 5.0;    // a block of solves is handed over about this often
+    double timeout_seconds = 0.0;  // per solve, from its start, whatever else runs; 0: none
+    double block_seconds = 5.0;    // a worker hands over its finished solves about this often
     std::function<bool()> stop;    // cancelled (a signal): finish nothing more, hand over what is finished
 };
 
@@ -37,6 +37,7 @@ struct SchedulerProgress {
 class SweepSink {
   public:
     virtual ~SweepSink() = default;
+    /// Solves of one item in any order among blocks, ascending by vertex within one.
     virtual void block_finished(std::size_t item, std::vector<SweepSolve> solves) = 0;
     /// All vertices of an item are solved; `seconds` is the time since it was opened.
     virtual void item_finished(std::size_t item, double seconds) = 0;

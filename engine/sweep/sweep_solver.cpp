@@ -54,6 +54,10 @@ FlowOptions flow_options(const SweepOptions& options) {
 
 }  // namespace
 
+std::string_view name_of(SweepSolverKind solver) {
+    return solver == SweepSolverKind::lanes ? "lanes" : "newton";
+}
+
 SweepSurface::SweepSurface(SurfaceMesh mesh, const SweepOptions& options)
     : mesh_(std::move(mesh)), options_(options), topology_(topology_of(mesh_.connectivity)) {
     cone_curvature_ = options.cone_curvature.value_or(2.0 * pi * topology_.euler_characteristic);
@@ -73,48 +77,77 @@ SweepSurface::SweepSurface(SurfaceMesh mesh, const SweepOptions& options)
     ordering_.assign(ordered.ordering().begin(), ordered.ordering().end());
     if (scaling) {
         start_ = rounded(surface_.triangulation);
+        if (options.solver == SweepSolverKind::lanes)
+            lane_surface_ = make_lane_surface(surface_, target_, ordering_);
     } else {
         packing_ = initial_circle_packing(mesh_.connectivity, mesh_.edge_length, Geometry::euclidean,
                                           options.scheme);
     }
 }
 
-std::int64_t SweepSurface::worker_bytes() const {
+LaneOptions SweepSurface::lane_options(int lanes) const {
+    LaneOptions options;
+    options.cone_curvature = cone_curvature_;
+    options.tolerance = options_.tolerance;
+    options.lanes = lanes;
+    if (options_.max_iterations > 0)
+        options.max_steps = std::min(options.max_steps, static_cast<int>(options_.max_iterations));
+    return options;
+}
+
+std::int64_t SweepSurface::worker_bytes(int lanes) const {
     // Per halfedge: two triangulations, fields and workspace; per unknown: a nested-dissection factor of
     // about 7.75 n log2 n entries (George 1973's constant for a grid), twice (own and first step), and its
     // pattern.
     const auto halfedges = static_cast<double>(surface_.triangulation.log_chord.size());
     const auto n = static_cast<double>(std::max<Index>(target_.unknown_count, 2));
-    return static_cast<std::int64_t>(halfedges * 140.0 + n * (2.0 * 8.0 * 7.75 * std::log2(n) + 400.0));
+    const auto newton =
+        static_cast<std::int64_t>(halfedges * 140.0 + n * (2.0 * 8.0 * 7.75 * std::log2(n) + 400.0));
+    if (!lane_surface_) return newton;
+    // Any vertex may fall back on Newton's method.
+    return newton + LaneSolver::predicted_bytes(lane_surface_->rows(), lane_surface_->faces.face_count(),
+                                                lane_options(lanes));
 }
 
 std::int64_t SweepSurface::shared_bytes() const {
     return static_cast<std::int64_t>(static_cast<double>(surface_.triangulation.log_chord.size()) * 70.0 +
-                                     static_cast<double>(mesh_.edge_length.size()) * 60.0);
+                                     static_cast<double>(mesh_.edge_length.size()) * 60.0) +
+           (lane_surface_ ? lane_surface_->bytes() : 0);
 }
 
-SweepWorker::SweepWorker(std::shared_ptr<const SweepSurface> surface)
-    : shared_(std::move(surface)), target_(shared_->target_) {
-    if (shared_->options_.densify && shared_->options_.scheme != Scheme::vertex_scaling)
-        return;  // a mesh per vertex
-    newton_ = std::make_unique<NewtonSolver>(shared_->surface_, target_, Definiteness::positive, true,
-                                             shared_->ordering_);
+SweepWorker::SweepWorker(std::shared_ptr<const SweepSurface> surface, int lanes)
+    : shared_(std::move(surface)), lanes_(lanes > 0 ? lanes : shared_->lanes()), target_(shared_->target_) {}
+
+void SweepWorker::make_newton() {
+    if (newton_ || (shared_->packing_ && shared_->options_.densify)) return;  // densify: a mesh per vertex
+    auto newton = std::make_unique<NewtonSolver>(shared_->surface_, target_, Definiteness::positive, true,
+                                                 shared_->ordering_);
     if (shared_->packing_) {
         packed_ =
             std::make_unique<PackedMetric>(shared_->surface_, *shared_->packing_, Geometry::euclidean, false);
-        return;
+    } else {
+        metric_ = std::make_unique<ScaledMetric<double>>(shared_->surface_, Geometry::euclidean, false);
+        newton->prepare_first_factor(*metric_, std::vector<double>(target_.curvature.size(), 0.0));
     }
-    metric_ = std::make_unique<ScaledMetric<double>>(shared_->surface_, Geometry::euclidean, false);
-    newton_->prepare_first_factor(*metric_, std::vector<double>(target_.curvature.size(), 0.0));
+    newton_ = std::move(newton);
+}
+
+void SweepWorker::drop_newton() {
+    newton_.reset();
+    metric_.reset();
+    extended_.reset();
+    packed_.reset();
+    target_ = shared_->target_;
 }
 
 SweepWorker::~SweepWorker() = default;
 
 SweepSolve SweepWorker::solve(Index vertex, const std::function<std::optional<Status>()>& interrupted) {
     using Clock = std::chrono::steady_clock;
-    const auto start = Clock::now();
     if (!std::binary_search(shared_->candidates_.begin(), shared_->candidates_.end(), vertex))
         throw std::invalid_argument(fmt::format("vertex {} is no interior vertex of this surface", vertex));
+    make_newton();
+    const auto start = Clock::now();
     SweepSolve result;
     result.vertex = vertex;
     result.area_distortion = std::numeric_limits<double>::quiet_NaN();

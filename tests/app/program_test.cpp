@@ -92,10 +92,10 @@ TEST(Program, ExitStatusTellsUsageFromEnvironment) {
 
 TEST(Program, SweepIsTheSameForAnyThreadsAndVerifies) {
     const TemporaryFolder folder;
-    const std::string mesh = make(folder, "eight", 800);
+    const std::string mesh = make(folder, "eight", 1500);
     const auto sweep = [&](const std::string& out, const char* threads) {
         const ProgramResult r =
-            run_ricci(folder, {"sweep", mesh, "--vertices", "sample:60:4", "--resolutions", "input,600",
+            run_ricci(folder, {"sweep", mesh, "--vertices", "sample:60:4", "--resolutions", "input,1000",
                                "--keep", "4", "--threads", threads, "-o", folder / out});
         EXPECT_EQ(r.status, 0) << r.err;
     };
@@ -118,7 +118,7 @@ TEST(Program, SweepIsTheSameForAnyThreadsAndVerifies) {
 
 TEST(Program, KilledAtRandomMomentsAndResumedEqualsUndisturbed) {
     const TemporaryFolder folder;
-    const std::string mesh = make(folder, "eight", 800), other = make(folder, "torus", 300);
+    const std::string mesh = make(folder, "eight", 1500), other = make(folder, "torus", 300);
     const Words words{"sweep", mesh, other, "--vertices", "sample:150:2", "--threads", "2", "-o"};
     Words plain = words, killed = words;
     plain.push_back(folder / "plain.h5");
@@ -147,7 +147,7 @@ TEST(Program, KilledAtRandomMomentsAndResumedEqualsUndisturbed) {
 
 TEST(Program, InterruptLeavesAResumableRun) {
     const TemporaryFolder folder;
-    const std::string mesh = make(folder, "eight", 3000);
+    const std::string mesh = make(folder, "eight", 20000);
     const Words words{"sweep", mesh, "--threads", "1", "-o", folder / "out.h5", "--resume"};
     const ProgramResult stopped = run_ricci(folder, words, 700, SIGINT);
     ASSERT_EQ(stopped.status, 130) << stopped.err;
@@ -157,6 +157,43 @@ TEST(Program, InterruptLeavesAResumableRun) {
     Words changed = words;
     changed.insert(changed.end(), {"--tolerance", "1e-9"});
     EXPECT_EQ(run_ricci(folder, changed).status, 2) << "another configuration must not continue this run";
+}
+
+TEST(Program, AResumeMayChangeTheLanesButNotTheSolver) {
+    const TemporaryFolder folder;
+    const std::string mesh = make(folder, "eight", 3000);
+    const Words words{"sweep", mesh, "--vertices", "sample:600", "--threads", "2"};
+    const auto with = [&](const char* out, const Words& more) {
+        Words all = words;
+        all.insert(all.end(), {"-o", folder / out});
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    };
+    ASSERT_EQ(run_ricci(folder, with("plain.h5", {})).status, 0);
+    const ProgramResult stopped = run_ricci(folder, with("out.h5", {"--lanes", "1"}), 400, SIGINT);
+    ASSERT_EQ(stopped.status, 130) << stopped.err;
+    EXPECT_EQ(run_ricci(folder, with("out.h5", {"--resume", "--solver", "newton"})).status, 2);
+    EXPECT_EQ(run_ricci(folder, with("out.h5", {"--resume", "--lanes", "5"})).status, 0);
+    expect_same(read_run(folder / "plain.h5"), read_run(folder / "out.h5"));
+    EXPECT_NE(read_run(folder / "out.h5").info.config.find("lanes = 5"), std::string::npos);
+    EXPECT_EQ(run_ricci(folder, with("out.h5", {"--lanes", "17"})).status, 2);
+    EXPECT_EQ(run_ricci(folder, with("out.h5", {"--solver", "none"})).status, 2);
+}
+
+TEST(Program, BothSolversGiveTheSameSweep) {
+    const TemporaryFolder folder;
+    const std::string mesh = make(folder, "eight", 1000);
+    for (const char* solver : {"lanes", "newton"})
+        ASSERT_EQ(run_ricci(folder, {"sweep", mesh, "--vertices", "sample:20", "--solver", solver, "-o",
+                                     folder / (std::string(solver) + ".h5")})
+                      .status,
+                  0);
+    const StoredRun lanes = read_run(folder / "lanes.h5"), newton = read_run(folder / "newton.h5");
+    const StoredSweep &x = *lanes.items.at(0).sweep, &y = *newton.items.at(0).sweep;
+    EXPECT_EQ(x.best, y.best);
+    EXPECT_EQ(x.worst, y.worst);
+    for (std::size_t k = 0; k < x.rows.size(); ++k)
+        EXPECT_NEAR(x.rows[k].area_distortion, y.rows[k].area_distortion, 1e-6 * y.rows[k].area_distortion);
 }
 
 TEST(Program, ABadItemDoesNotStopTheBatch) {

@@ -39,6 +39,7 @@ delaunay = "none"
 tolerance = 1e-8
 max_iterations = 7
 densify = true
+solver = "newton"
 [sweep]
 vertices = "sample:5:3"
 resolutions = [5000, "input"]
@@ -47,6 +48,7 @@ keep = 3
 output = "x.h5"
 shard = "1/4"
 threads = 2
+lanes = 3
 max_memory = "1G"
 timeout = 2.5
 )");
@@ -60,6 +62,8 @@ timeout = 2.5
     EXPECT_TRUE(options.densify);
     EXPECT_EQ(options.tolerance, 1e-8);
     EXPECT_EQ(options.max_iterations, 7);
+    EXPECT_EQ(options.solver, SweepSolverKind::newton);
+    EXPECT_EQ(options.lanes, 3);
     EXPECT_EQ(parse_resolutions(c.resolutions), (std::vector<Index>{5000, 0}));
     EXPECT_EQ(parse_keep(c.keep).count, 3);
     EXPECT_EQ(parse_shard(c.shard).index, 1U);
@@ -78,8 +82,13 @@ TEST(SweepConfig, ResolvedTextReadsBack) {
     EXPECT_EQ(to_toml(again, false), to_toml(c, false));
     SweepConfig other = c;
     other.threads = 7;
+    other.lanes = 5;
     other.output = "elsewhere.h5";
-    EXPECT_EQ(to_toml(other, true), to_toml(c, true)) << "threads and output decide no result";
+    EXPECT_EQ(to_toml(other, true), to_toml(c, true)) << "threads, lanes and output decide no result";
+    EXPECT_NE(to_toml(other, false), to_toml(c, false));
+    other.solver = "newton";
+    EXPECT_NE(to_toml(other, true), to_toml(c, true));
+    other = c;
     other.tolerance = 1e-9;
     EXPECT_NE(to_toml(other, true), to_toml(c, true));
 }
@@ -94,6 +103,19 @@ TEST(SweepConfig, NamesFileLineAndKeyOfAMistake) {
     EXPECT_NE(complaint("solve = 3\n").find("must be a table"), std::string::npos);
     EXPECT_NE(complaint("[solve\n").find("c.toml:1"), std::string::npos);
     EXPECT_EQ(complaint("[solve]\ntolerance = 1\n"), "") << "a whole number is a number";
+}
+
+TEST(SweepConfig, RefusesUnknownSolversAndLanes) {
+    SweepConfig c;
+    EXPECT_EQ(sweep_options(c).solver, SweepSolverKind::lanes);
+    EXPECT_EQ(sweep_options(c).lanes, kLanes);
+    c.lanes = 0;
+    EXPECT_THROW(sweep_options(c), UsageError);
+    c.lanes = kLanes + 1;
+    EXPECT_THROW(sweep_options(c), UsageError);
+    c.lanes = 1;
+    c.solver = "gauss";
+    EXPECT_THROW(sweep_options(c), UsageError);
 }
 
 TEST(Curvature, ParsesMultiplesOfPi) {

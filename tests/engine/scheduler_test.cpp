@@ -35,6 +35,8 @@ class Recorder : public SweepSink {
     void block_finished(std::size_t item, std::vector<SweepSolve> solves) override {
         const std::lock_guard lock(mutex_);
         ++blocks;
+        EXPECT_TRUE(std::is_sorted(solves.begin(), solves.end(),
+                                   [](const auto& a, const auto& b) { return a.vertex < b.vertex; }));
         for (SweepSolve& s : solves) {
             EXPECT_FALSE(finished.contains(item)) << "a block after the end of its item";
             // NaN is not equal to itself.
@@ -74,23 +76,28 @@ class Recorder : public SweepSink {
     std::mutex mutex_, progress_mutex_;
 };
 
-std::shared_ptr<const SweepSurface> eight(Index faces, std::uint64_t seed) {
+std::shared_ptr<const SweepSurface> eight(Index faces, std::uint64_t seed,
+                                          const SweepOptions& sweep = SweepOptions{}) {
     GenerateOptions options;
     options.faces = faces;
     options.jitter = 0.2;
     options.seed = seed;
-    return std::make_shared<SweepSurface>(generate("eight", options), SweepOptions{});
+    return std::make_shared<SweepSurface>(generate("eight", options), sweep);
 }
 
-/// Three sources: one surface, two surfaces, one surface.
-std::vector<SweepTask> open_sample(std::size_t source) {
-    const auto task = [](std::size_t item, Index faces, std::int64_t count) {
-        auto surface = eight(faces, item);
+/// Three sources: one surface, two surfaces (the second too small for lanes), one surface.
+std::vector<SweepTask> open_sample_with(std::size_t source, const SweepOptions& options) {
+    const auto task = [&](std::size_t item, Index faces, std::int64_t count) {
+        auto surface = eight(faces, item, options);
         return SweepTask{item, surface, sample_vertices(surface->candidates(), count, item)};
     };
-    if (source == 0) return {task(0, 400, 30)};
-    if (source == 1) return {task(1, 500, 17), task(2, 420, 1)};
-    return {task(3, 600, 12)};
+    if (source == 0) return {task(0, 1000, 30)};
+    if (source == 1) return {task(1, 1300, 17), task(2, 300, 1)};
+    return {task(3, 1600, 12)};
+}
+
+std::vector<SweepTask> open_sample(std::size_t source) {
+    return open_sample_with(source, {});
 }
 
 TEST(Scheduler, RowsDoNotDependOnThreadsOrBlocks) {
@@ -112,6 +119,60 @@ TEST(Scheduler, RowsDoNotDependOnThreadsOrBlocks) {
                 << threads << " threads, blocks of " << block_seconds;
             EXPECT_EQ(recorder.finished, reference.finished);
         }
+}
+
+TEST(Scheduler, RowsDoNotDependOnLanes) {
+    Recorder reference;
+    run_sweeps(3, open_sample, reference, {});
+    SweepOptions sweep;
+    for (const int lanes : {1, 3, 7})
+        for (const int threads : {1, 2, 3}) {
+            sweep.lanes = lanes;
+            SchedulerOptions options;
+            options.threads = threads;
+            Recorder recorder;
+            run_sweeps(
+                3, [&](std::size_t source) { return open_sample_with(source, sweep); }, recorder, options);
+            EXPECT_TRUE(recorder.rows == reference.rows) << lanes << " lanes, " << threads << " threads";
+        }
+}
+
+TEST(Scheduler, TheNewtonSolverGivesTheSameRowsForAnyThreads) {
+    SweepOptions sweep;
+    sweep.solver = SweepSolverKind::newton;
+    const auto open = [&](std::size_t source) { return open_sample_with(source, sweep); };
+    Recorder reference;
+    run_sweeps(3, open, reference, {});
+    EXPECT_EQ(reference.rows.size(), 60U);
+    SchedulerOptions options;
+    options.threads = 3;
+    options.block_seconds = 1e-6;
+    Recorder recorder;
+    run_sweeps(3, open, recorder, options);
+    EXPECT_TRUE(recorder.rows == reference.rows);
+}
+
+TEST(Scheduler, UsesFewerLanesWhereMemoryIsShort) {
+    const auto surface = eight(1000, 0);
+    ASSERT_GT(surface->lanes(), 1);
+    ASSERT_LT(surface->worker_bytes(1), surface->worker_bytes(2));
+    const auto open = [&](std::size_t) {
+        return std::vector<SweepTask>{{0, surface, sample_vertices(surface->candidates(), 40, 1)}};
+    };
+    Recorder reference;
+    run_sweeps(1, open, reference, {});
+    for (const int lanes : {1, 2, 5}) {
+        SchedulerOptions options;
+        options.threads = 2;
+        options.max_memory = surface->shared_bytes() + surface->worker_bytes(lanes);
+        Recorder recorder;
+        run_sweeps(1, open, recorder, options);
+        EXPECT_TRUE(recorder.rows == reference.rows) << lanes;
+        --options.max_memory;
+        Recorder less;
+        run_sweeps(1, open, less, options);
+        EXPECT_EQ(less.failed.size(), lanes == 1 ? 1U : 0U);
+    }
 }
 
 TEST(Scheduler, SourcesAreOpenedInOrderOneAtATime) {
