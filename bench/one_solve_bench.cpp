@@ -13,6 +13,7 @@
 #include <numbers>
 
 #include "bench/clocks.h"
+#include "bench/independent_newton.h"
 #include "bench/surfaces.h"
 #include "engine/flow/flow.h"
 #include "engine/flow/newton.h"
@@ -192,9 +193,10 @@ void one_solve(benchmark::State& state, const std::function<SurfaceMesh()>& make
     const FlowOptions options = one_cone(mesh);
     const Problem problem = make_problem(mesh, options);
     const Pieces pieces = measure_pieces(mesh, problem);
-    Samples flow, newton, preparation;
+    Samples flow, newton, preparation, baseline;
     FlowResult result;
     SolveOutcome outcome;
+    bool baseline_converged = true;
     for (auto _ : state) {
         flow.measure([&] { result = solve_flow(mesh, options); });
         state.SetIterationTime(flow.thread.back());
@@ -207,9 +209,15 @@ void one_solve(benchmark::State& state, const std::function<SurfaceMesh()>& make
         });
         std::vector<double> u(problem.target.curvature.size(), 0.0);
         newton.measure([&] { outcome = solver->solve(*metric, problem.target, problem.options, u); });
+        SolveOutcome independent;
+        baseline.measure([&] {
+            bench::IndependentNewton alone(mesh, options.tolerance);
+            independent = alone.solve(options.cones.front().vertex, u);
+        });
+        baseline_converged = baseline_converged && independent.status == Status::converged;
     }
     if (!pieces.sound || result.outcome.status != Status::converged || outcome.status != Status::converged ||
-        result.outcome.residual_max > options.tolerance) {
+        result.outcome.residual_max > options.tolerance || !baseline_converged) {
         state.SkipWithError("the solve did not converge");
         return;
     }
@@ -218,6 +226,8 @@ void one_solve(benchmark::State& state, const std::function<SurfaceMesh()>& make
     state.counters["vertices"] = mesh.connectivity.vertex_count;
     state.counters["steps"] = outcome.iterations;
     state.counters["flow_ms"] = milliseconds(flow.thread);
+    state.counters["baseline_ms"] = milliseconds(baseline.thread);
+    state.counters["baseline_ratio"] = milliseconds(baseline.thread) / milliseconds(flow.thread);
     state.counters["newton_ms"] = milliseconds(newton.thread);
     state.counters["prepare_ms"] = milliseconds(preparation.thread);
     state.counters["factor_ms"] = milliseconds(pieces.factor.thread);
@@ -249,6 +259,7 @@ void add(const std::string& name, const std::function<SurfaceMesh()>& make_mesh)
 
 const bool kRegistered = [] {
     add("generated_eight_24k", [] { return bench::generated("eight", 24000); });
+    add("generated_eight_200k", [] { return bench::generated("eight", 200000); });
     const auto sample = [](const std::string& name, const std::string& relative, bool loop) {
         const auto path = bench::sample_path("meshes/" + relative);
         if (!path) return;
