@@ -133,6 +133,7 @@ CommandSweep sweep_command(const std::string& mesh, const std::string& vertices,
         {"--output", output},     {"--solver", "lanes"}, {"--tolerance", "1e-10"}};
     for (const auto& [name, value] : options) words.insert(words.end(), {name, value});
     std::vector<char*> arguments;
+    arguments.reserve(words.size());
     for (std::string& word : words) arguments.push_back(word.data());
     CommandSweep result;
     {
@@ -407,7 +408,7 @@ void two_threads(benchmark::State& state, const MeshFile& make_file) {
 
 MeshFile written(const std::string& name, const std::function<SurfaceMesh()>& make_mesh) {
     return [name, make_mesh] {
-        const std::string file = folder().file(name + ".off");
+        std::string file = folder().file(name + ".off");
         if (!std::filesystem::exists(file)) save_mesh(file, make_mesh());
         return file;
     };

@@ -168,26 +168,30 @@ RICCI_ALWAYS_INLINE void steps_of_depth(std::size_t depth, std::size_t rows, con
 }
 
 // One set of entry points per instruction set.
-#define RICCI_LANE_VECTORS(name, target)                                                                \
-    target LaneRow<double> round_##name(const LaneArray<double>& values, std::size_t rows,              \
-                                        LaneArray<float>& rounded) {                                    \
-        return round_rows(values, rows, rounded);                                                       \
-    }                                                                                                   \
-    target void products_##name(std::size_t depth, std::size_t rows, const LaneArray<float>& right,     \
-                                const LaneArray<float>& right_before, const LaneArray<float>& solution, \
-                                const LaneArray<float>& solution_before, LaneHistory& history,          \
-                                LaneProducts& out) {                                                    \
-        products_of_depth(depth, rows, right, right_before, solution, solution_before, history, out);   \
-    }                                                                                                   \
-    target void steps_##name(std::size_t depth, std::size_t rows, const StepArguments& arguments,       \
-                             const LaneArray<float>& solution, const LaneArray<float>& solution_before, \
-                             LaneHistory& history, LaneArray<float>& step, LaneArray<double>& u) {      \
-        steps_of_depth(depth, rows, arguments, solution, solution_before, history, step, u);            \
+#define RICCI_TARGET_baseline
+#define RICCI_TARGET_avx2 RICCI_AVX2
+#define RICCI_TARGET_avx512 RICCI_AVX512
+#define RICCI_LANE_VECTORS(name)                                                                            \
+    RICCI_TARGET_##name LaneRow<double> round_##name(const LaneArray<double>& values, std::size_t rows,     \
+                                                     LaneArray<float>& rounded) {                           \
+        return round_rows(values, rows, rounded);                                                           \
+    }                                                                                                       \
+    RICCI_TARGET_##name void products_##name(                                                               \
+        std::size_t depth, std::size_t rows, const LaneArray<float>& right,                                 \
+        const LaneArray<float>& right_before, const LaneArray<float>& solution,                             \
+        const LaneArray<float>& solution_before, LaneHistory& history, LaneProducts& out) {                 \
+        products_of_depth(depth, rows, right, right_before, solution, solution_before, history, out);       \
+    }                                                                                                       \
+    RICCI_TARGET_##name void steps_##name(std::size_t depth, std::size_t rows,                              \
+                                          const StepArguments& arguments, const LaneArray<float>& solution, \
+                                          const LaneArray<float>& solution_before, LaneHistory& history,    \
+                                          LaneArray<float>& step, LaneArray<double>& u) {                   \
+        steps_of_depth(depth, rows, arguments, solution, solution_before, history, step, u);                \
     }
-RICCI_LANE_VECTORS(baseline, )
+RICCI_LANE_VECTORS(baseline)
 #ifdef RICCI_LANE_TARGETS
-RICCI_LANE_VECTORS(avx2, RICCI_AVX2)
-RICCI_LANE_VECTORS(avx512, RICCI_AVX512)
+RICCI_LANE_VECTORS(avx2)
+RICCI_LANE_VECTORS(avx512)
 #endif
 #undef RICCI_LANE_VECTORS
 

@@ -44,14 +44,6 @@ OwnedRegion::OwnedRegion(const LaneSurface& surface, bool flips, int lane, std::
       local_halfedge_(surface.triangulation.tail.size(), -1),
       local_vertex_(at(surface.rows()), -1) {}
 
-std::int64_t OwnedRegion::bytes() const {
-    const std::size_t per_face = 3 * (3 * sizeof(Index) + 3 * sizeof(double)) + 2 * sizeof(Index);
-    const std::size_t per_vertex = sizeof(Index) + 8 * sizeof(double);
-    return static_cast<std::int64_t>((local_halfedge_.capacity() + local_vertex_.capacity()) * sizeof(Index) +
-                                     tail_.capacity() / 3 * per_face + row_.capacity() * per_vertex +
-                                     skyline_.capacity() * sizeof(double));
-}
-
 bool OwnedRegion::exhausted() const {
     // Several times what solves that end well need; beyond, Newton's method on the whole surface is cheaper.
     return work_ + flips_ > 200000 + 4 * static_cast<std::int64_t>(surface_->faces.face_count());

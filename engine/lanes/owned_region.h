@@ -50,11 +50,9 @@ class OwnedRegion {
 
     [[nodiscard]] std::int64_t flips() const { return flips_; }
     [[nodiscard]] Index face_count() const { return static_cast<Index>(tail_.size() / 3); }
-    [[nodiscard]] Index patch_size() const { return patch_; }
     /// More has been done on the patch than a solve is worth; nothing moves any more.
     [[nodiscard]] bool exhausted() const;
     [[nodiscard]] int newton_steps() const { return newton_steps_; }
-    [[nodiscard]] std::int64_t bytes() const;
 
   private:
     Index vertex_of_row(Index row, const LaneArray<double>* shrink);
