@@ -6,18 +6,14 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <string>
 #include <vector>
 
 #include "bench/clocks.h"
-#include "bench/surfaces.h"
-#include "engine/flow/hessian.h"
+#include "bench/grounded_laplacian.h"
 #include "engine/linear/lane_factor.h"
 #include "engine/linear/symmetric_solver.h"
-#include "kernels/face_kernels.h"
 #include "kernels/instruction_set.h"
-#include "kernels/intrinsic_triangulation.h"
 
 namespace {
 
@@ -35,20 +31,9 @@ const Problem& problem(Index faces) {
     const auto found = made.find(faces);
     if (found != made.end()) return found->second;
     Problem& p = made[faces];
-    const auto t = intrinsic_triangulation<double>(bench::generated("eight", faces));
-    const Index vertices = t.connectivity.vertex_count;
-    std::vector<double> angle(t.log_chord.size()), off(angle.size()), diagonal(angle.size());
-    const std::vector<double> u(at(vertices), 0.0);
-    const ScaledChords<double> chords{t.connectivity.tail, t.log_chord, u};
-    evaluate_faces<double>(Geometry::euclidean, chords, {angle, off, diagonal, {}}, false);
-    std::vector<Index> unknown(at(vertices));
-    std::iota(unknown.begin(), unknown.end(), Index{0});
-    HessianAssembler assembler;
-    assembler.build(t.connectivity, unknown, vertices);
-    std::vector<double> values;
-    assembler.assemble(t.connectivity, off, diagonal, 0, values);
-    p.solver->choose_ordering(assembler.pattern(), Ordering::nested_dissection);
-    if (!p.solver->factorize(values)) throw std::runtime_error("not positive definite");
+    const bench::GroundedLaplacian matrix = bench::grounded_laplacian(faces);
+    p.solver->choose_ordering(matrix.pattern, Ordering::nested_dissection);
+    if (!p.solver->factorize(matrix.values)) throw std::runtime_error("not positive definite");
     p.factor = p.solver->supernodal_factor();
     return p;
 }

@@ -5,13 +5,9 @@
 #include <Eigen/SparseCholesky>
 #include <cmath>
 #include <memory>
-#include <numeric>
 
-#include "bench/surfaces.h"
-#include "engine/flow/hessian.h"
+#include "bench/grounded_laplacian.h"
 #include "engine/linear/symmetric_solver.h"
-#include "kernels/face_kernels.h"
-#include "kernels/intrinsic_triangulation.h"
 
 namespace {
 
@@ -24,20 +20,9 @@ struct Matrix {
 };
 
 Matrix make_matrix(Index faces) {
-    const auto t = intrinsic_triangulation<double>(bench::generated("eight", faces));
-    const Index vertices = t.connectivity.vertex_count;
-    std::vector<double> angle(t.log_chord.size()), off(angle.size()), diagonal(angle.size());
-    const std::vector<double> u(at(vertices), 0.0);
-    const ScaledChords<double> chords{t.connectivity.tail, t.log_chord, u};
-    evaluate_faces<double>(Geometry::euclidean, chords, {angle, off, diagonal, {}}, false);
-    std::vector<Index> unknown(at(vertices));
-    std::iota(unknown.begin(), unknown.end(), Index{0});
-    HessianAssembler assembler;
-    assembler.build(t.connectivity, unknown, vertices);
-    Matrix matrix;
-    assembler.assemble(t.connectivity, off, diagonal, 0, matrix.values);
-    matrix.pattern = assembler.pattern();
-    for (Index v = 0; v < vertices; ++v) matrix.rhs.push_back(std::sin(0.1 * v));
+    const bench::GroundedLaplacian laplacian = bench::grounded_laplacian(faces);
+    Matrix matrix{laplacian.pattern, laplacian.values, {}};
+    for (Index v = 0; v < matrix.pattern.size(); ++v) matrix.rhs.push_back(std::sin(0.1 * v));
     return matrix;
 }
 

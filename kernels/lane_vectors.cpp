@@ -122,50 +122,31 @@ RICCI_ALWAYS_INLINE void steps(std::size_t rows, const StepArguments& arguments,
     }
 }
 
-RICCI_ALWAYS_INLINE void products_of_depth(std::size_t depth, std::size_t rows, const LaneArray<float>& right,
-                                           const LaneArray<float>& right_before,
-                                           const LaneArray<float>& solution,
-                                           const LaneArray<float>& solution_before, LaneHistory& history,
-                                           LaneProducts& out) {
-    switch (depth) {
-#define RICCI_DEPTH(d)                                                                   \
-    case d:                                                                              \
-        products<d>(rows, right, right_before, solution, solution_before, history, out); \
-        break;
-        RICCI_DEPTH(0)
-        RICCI_DEPTH(1)
-        RICCI_DEPTH(2)
-        RICCI_DEPTH(3)
-        RICCI_DEPTH(4)
-        RICCI_DEPTH(5)
-        RICCI_DEPTH(6)
-#undef RICCI_DEPTH
-        default:
-            break;
+/// Runs `call<depth>(...)` with the depth as a constant.
+#define RICCI_WITH_DEPTH(depth, call, ...)   \
+    switch (depth) {                         \
+        case 0:                              \
+            call<0>(__VA_ARGS__);            \
+            break;                           \
+        case 1:                              \
+            call<1>(__VA_ARGS__);            \
+            break;                           \
+        case 2:                              \
+            call<2>(__VA_ARGS__);            \
+            break;                           \
+        case 3:                              \
+            call<3>(__VA_ARGS__);            \
+            break;                           \
+        case 4:                              \
+            call<4>(__VA_ARGS__);            \
+            break;                           \
+        case 5:                              \
+            call<5>(__VA_ARGS__);            \
+            break;                           \
+        default:                             \
+            call<kLaneHistory>(__VA_ARGS__); \
+            break;                           \
     }
-}
-
-RICCI_ALWAYS_INLINE void steps_of_depth(std::size_t depth, std::size_t rows, const StepArguments& arguments,
-                                        const LaneArray<float>& solution,
-                                        const LaneArray<float>& solution_before, LaneHistory& history,
-                                        LaneArray<float>& step, LaneArray<double>& u) {
-    switch (depth) {
-#define RICCI_DEPTH(d)                                                          \
-    case d:                                                                     \
-        steps<d>(rows, arguments, solution, solution_before, history, step, u); \
-        break;
-        RICCI_DEPTH(0)
-        RICCI_DEPTH(1)
-        RICCI_DEPTH(2)
-        RICCI_DEPTH(3)
-        RICCI_DEPTH(4)
-        RICCI_DEPTH(5)
-        RICCI_DEPTH(6)
-#undef RICCI_DEPTH
-        default:
-            break;
-    }
-}
 
 // One set of entry points per instruction set.
 #define RICCI_TARGET_baseline
@@ -179,14 +160,15 @@ RICCI_ALWAYS_INLINE void steps_of_depth(std::size_t depth, std::size_t rows, con
     RICCI_TARGET_##name void products_##name(                                                               \
         std::size_t depth, std::size_t rows, const LaneArray<float>& right,                                 \
         const LaneArray<float>& right_before, const LaneArray<float>& solution,                             \
-        const LaneArray<float>& solution_before, LaneHistory& history, LaneProducts& out) {                 \
-        products_of_depth(depth, rows, right, right_before, solution, solution_before, history, out);       \
-    }                                                                                                       \
-    RICCI_TARGET_##name void steps_##name(std::size_t depth, std::size_t rows,                              \
-                                          const StepArguments& arguments, const LaneArray<float>& solution, \
-                                          const LaneArray<float>& solution_before, LaneHistory& history,    \
-                                          LaneArray<float>& step, LaneArray<double>& u) {                   \
-        steps_of_depth(depth, rows, arguments, solution, solution_before, history, step, u);                \
+        const LaneArray<float>& solution_before, LaneHistory& history, LaneProducts& out){RICCI_WITH_DEPTH( \
+        depth, products, rows, right, right_before, solution, solution_before, history,                     \
+        out)} RICCI_TARGET_##name void steps_##name(std::size_t depth, std::size_t rows,                    \
+                                                    const StepArguments& arguments,                         \
+                                                    const LaneArray<float>& solution,                       \
+                                                    const LaneArray<float>& solution_before,                \
+                                                    LaneHistory& history, LaneArray<float>& step,           \
+                                                    LaneArray<double>& u) {                                 \
+        RICCI_WITH_DEPTH(depth, steps, rows, arguments, solution, solution_before, history, step, u)        \
     }
 RICCI_LANE_VECTORS(baseline)
 #ifdef RICCI_LANE_TARGETS
@@ -194,6 +176,7 @@ RICCI_LANE_VECTORS(avx2)
 RICCI_LANE_VECTORS(avx512)
 #endif
 #undef RICCI_LANE_VECTORS
+#undef RICCI_WITH_DEPTH
 
 template <class Baseline, class Avx2, class Avx512>
 auto chosen(Baseline baseline, [[maybe_unused]] Avx2 avx2, [[maybe_unused]] Avx512 avx512) {

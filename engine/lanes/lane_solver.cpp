@@ -70,12 +70,19 @@ struct Acceleration {
     }
 };
 
+/// Rings of the patch for a cone.
+int rings_for(double cone_curvature) {
+    const double chi = std::abs(cone_curvature) / (2.0 * std::numbers::pi);
+    // Measured: fewer rings cost global steps, more cost time on the patch.
+    return std::clamp(3 + static_cast<int>(std::lround(chi)), 4, 14);
+}
+
 }  // namespace
 
 /// One singularity under way.
 struct LaneSolver::Lane {
-    Lane(const LaneSurface& surface, const LaneOptions& options, int number, std::vector<LaneMask>& owned)
-        : index(number), region(surface, options.delaunay, number, owned) {}
+    Lane(const LaneSurface& surface, int number, std::vector<LaneMask>& owned)
+        : index(number), region(surface, number, owned) {}
 
     int index;
     OwnedRegion region;
@@ -89,12 +96,6 @@ struct LaneSolver::Lane {
     Acceleration acceleration;
     Clock::time_point begun;
 };
-
-int LaneSolver::rings_for(double cone_curvature) {
-    const double chi = std::abs(cone_curvature) / (2.0 * std::numbers::pi);
-    // Measured: fewer rings cost global steps, more cost time on the patch.
-    return std::clamp(3 + static_cast<int>(std::lround(chi)), 4, 14);
-}
 
 LaneSolver::LaneSolver(std::shared_ptr<const LaneSurface> surface, Index vertex_count,
                        const LaneOptions& options)
@@ -111,7 +112,7 @@ LaneSolver::LaneSolver(std::shared_ptr<const LaneSurface> surface, Index vertex_
     history_.right.assign(static_cast<std::size_t>(options_.history), LaneArray<float>(rows));
     history_.point = history_.right;
     owned_.assign(at(s.faces.face_count()), 0);
-    for (int l = 0; l < options_.lanes; ++l) lanes_.push_back(std::make_unique<Lane>(s, options_, l, owned_));
+    for (int l = 0; l < options_.lanes; ++l) lanes_.push_back(std::make_unique<Lane>(s, l, owned_));
 }
 
 LaneSolver::~LaneSolver() = default;
@@ -173,7 +174,6 @@ void LaneSolver::finish(Lane& lane, const LaneStream& stream, bool converged,
     solve.steps = lane.steps;
     solve.patch_steps = lane.region.newton_steps();
     solve.flips = lane.region.flips();
-    solve.seconds = std::chrono::duration<double>(Clock::now() - lane.begun).count();
     solve.conformal_factor.assign(at(vertex_count_), 0.0);
     const LaneSurface& s = *surface_;
     const auto l = static_cast<std::size_t>(lane.index);
@@ -185,7 +185,18 @@ void LaneSolver::finish(Lane& lane, const LaneStream& stream, bool converged,
     for (std::size_t r = 0; r < at(s.unknowns); ++r)
         solve.conformal_factor[at(s.vertex_of_row[r])] = u_[r].lane[l] - mean;
     stream.finished(std::move(solve));
+    if (!converged) forget(lane);
     fill(lane, stream);
+}
+
+void LaneSolver::forget(const Lane& lane) {
+    const auto l = static_cast<std::size_t>(lane.index);
+    const auto clear = [l](LaneArray<float>& array) {
+        for (LaneRow<float>& row : array) row.lane[l] = 0.0F;
+    };
+    for (auto* array : {&step_, &right_, &previous_right_, &solution_, &previous_solution_}) clear(*array);
+    for (auto* changes : {&history_.right, &history_.point})
+        for (LaneArray<float>& change : *changes) clear(change);
 }
 
 void LaneSolver::precondition() {
@@ -225,7 +236,7 @@ void LaneSolver::step() {
 void LaneSolver::follow_lanes() {
     // Edges flip while the first steps are made, and hardly ever later: a look at the end makes sure.
     const auto wants_flips = [&](const Lane& lane) {
-        return options_.delaunay && (lane.residual > 1e-4 || lane.residual < 100.0 * options_.tolerance);
+        return lane.residual > 1e-4 || lane.residual < 100.0 * options_.tolerance;
     };
     LaneMask wanted = 0;
     for (const auto& lane : lanes_) {
@@ -252,7 +263,7 @@ void LaneSolver::follow_lanes() {
         }
         region.store(u_, shrink_, step_);
         ++lane->steps;
-        lane->checked = !options_.delaunay;
+        lane->checked = false;
     }
     if (wanted == 0) return;
     find_lane_flips(surface_->edges, shrink_, owned_, flips_);

@@ -17,11 +17,10 @@ namespace ricci {
 struct LaneOptions {
     double cone_curvature = 0.0;  // radians, added at the cone
     double tolerance = 1e-10;     // on max |K - target|
-    bool delaunay = true;
-    int lanes = kLanes;  // lanes in use, 1 … kLanes; the bits do not depend on it
-    int rings = 0;       // of the patch; 0: by the cone's curvature
-    int history = 3;     // of the acceleration
-    int max_steps = 60;  // global steps; then the lane gives up
+    int lanes = kLanes;           // lanes in use, 1 … kLanes; the bits do not depend on it
+    int rings = 0;                // of the patch; 0: by the cone's curvature
+    int history = 3;              // of the acceleration
+    int max_steps = 60;           // global steps; then the lane gives up
 };
 
 /// What became of one singularity.
@@ -33,7 +32,6 @@ struct LaneSolve {
     int steps = 0;        // back-solves
     int patch_steps = 0;  // Newton steps on the patch
     std::int64_t flips = 0;
-    double seconds = 0.0;                  // from its start to its end; other lanes run meanwhile
     std::vector<double> conformal_factor;  // V; mean zero where the solution is scale-free
 };
 
@@ -63,8 +61,6 @@ class LaneSolver {
 
     /// Bytes that one solver allocates at first, without what its regions grow by.
     static std::int64_t predicted_bytes(Index rows, Index faces, const LaneOptions& options);
-    /// Rings of the patch for a cone.
-    static int rings_for(double cone_curvature);
 
   private:
     struct Lane;
@@ -72,6 +68,9 @@ class LaneSolver {
 
     void fill(Lane& lane, const LaneStream& stream);
     void finish(Lane& lane, const LaneStream& stream, bool converged, std::optional<Status> interrupted);
+    /// Clears what a lane that did not converge leaves behind: the next one's weight for it is 0, but 0 times
+    /// infinity is not.
+    void forget(const Lane& lane);
     void follow_lanes();
     void shorten_step(const Lane& lane);
     void measure();

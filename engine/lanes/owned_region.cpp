@@ -36,9 +36,8 @@ bool fails_delaunay(const Quadrilateral& q, double shrink_i, double shrink_j, do
 
 }  // namespace
 
-OwnedRegion::OwnedRegion(const LaneSurface& surface, bool flips, int lane, std::vector<LaneMask>& owned)
+OwnedRegion::OwnedRegion(const LaneSurface& surface, int lane, std::vector<LaneMask>& owned)
     : surface_(&surface),
-      flips_allowed_(flips),
       lane_(lane),
       owned_(&owned),
       local_halfedge_(surface.triangulation.tail.size(), -1),
@@ -458,7 +457,6 @@ bool OwnedRegion::try_step(Index first, double length, double& largest, bool fli
 
 bool OwnedRegion::relax_from(Index first, double goal, bool flips, const LaneArray<double>& shrink) {
     constexpr int kSteps = 50, kHalvings = 20;
-    flips = flips && flips_allowed_;
     if (!settle(first, flips, shrink)) return false;
     double largest = patch_residual(first);
     bool fresh = false;  // the factor is of this very point
@@ -510,7 +508,7 @@ bool OwnedRegion::relax_first(const LaneArray<double>& shrink) {
     bool usable = false;
     for (int flat = std::max(1, static_cast<int>(std::lround(power - 1.0))); !usable; ++flat) {
         blunt(flat);
-        usable = settle(0, flips_allowed_, shrink);
+        usable = settle(0, true, shrink);
         if (flat >= rings) break;
     }
     if (!usable) return false;

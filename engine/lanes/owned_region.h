@@ -20,7 +20,7 @@ namespace ricci {
 class OwnedRegion {
   public:
     /// `owned`: F, shared by the lanes of a block.
-    OwnedRegion(const LaneSurface& surface, bool flips, int lane, std::vector<LaneMask>& owned);
+    OwnedRegion(const LaneSurface& surface, int lane, std::vector<LaneMask>& owned);
 
     /// Cuts out the faces around the vertices within `rings` rings of `cone` (a row), whose target curvature
     /// there is `curvature` more than the surface's.
@@ -72,7 +72,6 @@ class OwnedRegion {
     bool factorize(Index first);
 
     const LaneSurface* surface_;
-    bool flips_allowed_;
     int lane_;
     std::vector<LaneMask>* owned_;
     std::vector<Index> taken_;  // faces of the start triangulation

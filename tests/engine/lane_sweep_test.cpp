@@ -19,11 +19,14 @@
 #include "engine/sweep/scheduler.h"
 #include "engine/sweep/sweep_solver.h"
 #include "io/mesh/mesh_file.h"
+#include "tests/engine/sweep_checks.h"
 #include "tests/support/small_surfaces.h"
 #include "tests/support/test_data.h"
 
 namespace ricci {
 namespace {
+
+using testing::expect_same;
 
 using Solves = std::map<Index, SweepSolve>;
 
@@ -60,18 +63,6 @@ Solves run(const std::shared_ptr<const SweepSurface>& surface, const std::vector
            int lanes = 0) {
     SweepWorker worker(surface, lanes);
     return run(worker, vertices);
-}
-
-/// What must agree bit for bit, which is everything but the time.
-void expect_same(const SweepSolve& a, const SweepSolve& b) {
-    EXPECT_EQ(a.vertex, b.vertex);
-    EXPECT_EQ(a.status, b.status);
-    EXPECT_EQ(a.area_distortion, b.area_distortion);
-    EXPECT_EQ(a.residual_max, b.residual_max);
-    EXPECT_EQ(a.newton_iterations, b.newton_iterations);
-    EXPECT_EQ(a.flips, b.flips);
-    EXPECT_EQ(a.extended_precision, b.extended_precision);
-    EXPECT_EQ(a.conformal_factor, b.conformal_factor);
 }
 
 void expect_same(const Solves& a, const Solves& b) {

@@ -17,11 +17,14 @@
 #include "engine/sweep/sweep_solver.h"
 #include "engine/verify/recompute.h"
 #include "io/mesh/mesh_file.h"
+#include "tests/engine/sweep_checks.h"
 #include "tests/support/small_surfaces.h"
 #include "tests/support/test_data.h"
 
 namespace ricci {
 namespace {
+
+using testing::expect_same;
 
 using std::numbers::pi;
 using testing::at;
@@ -31,17 +34,6 @@ SurfaceMesh made(const std::string& name, Index faces, double jitter = 0.0) {
     options.faces = faces;
     options.jitter = jitter;
     return generate(name, options);
-}
-
-/// What must agree bit for bit, which is everything but the time.
-void expect_same(const SweepSolve& a, const SweepSolve& b) {
-    EXPECT_EQ(a.vertex, b.vertex);
-    EXPECT_EQ(a.status, b.status);
-    EXPECT_EQ(a.area_distortion, b.area_distortion);
-    EXPECT_EQ(a.residual_max, b.residual_max);
-    EXPECT_EQ(a.newton_iterations, b.newton_iterations);
-    EXPECT_EQ(a.flips, b.flips);
-    EXPECT_EQ(a.conformal_factor, b.conformal_factor);
 }
 
 TEST(SweepSurface, ExplainsWhyNoVertexCanBeTheOnlyCone) {
