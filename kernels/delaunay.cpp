@@ -102,6 +102,7 @@ FlipCount make_delaunay(IntrinsicTriangulation<Real>& t, std::span<const double>
                         DelaunayWorkspace& w) {
     Connectivity& c = t.connectivity;
     w.touched_faces.clear();
+    w.flipped.clear();
     w.stack.clear();
     w.on_stack.resize(static_cast<std::size_t>(c.edge_count));
     test_corners(t, u, w.corner_test);
@@ -132,6 +133,7 @@ FlipCount make_delaunay(IntrinsicTriangulation<Real>& t, std::span<const double>
                                                       : unfolded_log<Real>(t.log_chord, c, h);
         flip_edge<Real>(c, t.log_chord, h, length);
         ++count.flips;
+        w.flipped.push_back(h);
         w.touched_faces.push_back(face_of(h));
         w.touched_faces.push_back(face_of(twin));
         // The four sides of the quadrilateral, in their new slots.

@@ -17,8 +17,7 @@ bool flippable(const Connectivity& connectivity, Index h) {
     return t != kNoTwin && face_of(t) != face_of(h);
 }
 
-template <class Real>
-void flip_edge(Connectivity& c, std::span<Real> log_chord, Index h, Real new_log) {
+void flip_edge(Connectivity& c, Index h) {
     const Index t = c.twin[at(h)];
     const Index hn = next_halfedge(h), hp = prev_halfedge(h);
     const Index tn = next_halfedge(t), tp = prev_halfedge(t);
@@ -30,10 +29,6 @@ void flip_edge(Connectivity& c, std::span<Real> log_chord, Index h, Real new_log
     c.edge[at(t)] = c.edge[at(hn)];
     c.edge[at(hn)] = diagonal;
     c.edge[at(tn)] = diagonal;
-    log_chord[at(h)] = log_chord[at(tn)];
-    log_chord[at(t)] = log_chord[at(hn)];
-    log_chord[at(hn)] = new_log;
-    log_chord[at(tn)] = new_log;
     c.tail[at(hn)] = c.tail[at(tp)];
     c.tail[at(tn)] = c.tail[at(hp)];
     c.twin[at(h)] = outer_tn;
@@ -42,6 +37,17 @@ void flip_edge(Connectivity& c, std::span<Real> log_chord, Index h, Real new_log
     if (outer_hn != kNoTwin) c.twin[at(outer_hn)] = t;
     c.twin[at(hn)] = tn;
     c.twin[at(tn)] = hn;
+}
+
+template <class Real>
+void flip_edge(Connectivity& c, std::span<Real> log_chord, Index h, Real new_log) {
+    const Index t = c.twin[at(h)];
+    const Index hn = next_halfedge(h), tn = next_halfedge(t);
+    log_chord[at(h)] = log_chord[at(tn)];
+    log_chord[at(t)] = log_chord[at(hn)];
+    log_chord[at(hn)] = new_log;
+    log_chord[at(tn)] = new_log;
+    flip_edge(c, h);
 }
 
 template <class Real>

@@ -22,6 +22,9 @@ bool flippable(const Connectivity& connectivity, Index h);
 template <class Real>
 void flip_edge(Connectivity& connectivity, std::span<Real> log_chord, Index h, Real new_log);
 
+/// The same without lengths.
+void flip_edge(Connectivity& connectivity, Index h);
+
 /// Ptolemy: lambda_kl = (lambda_ik lambda_jl + lambda_il lambda_jk) / lambda_ij, in logarithms. Holds for
 /// chords of all three geometries and needs no triangle inequality (Gu, Luo, Sun, Wu 2018; Springborn 2019).
 template <class Real>
