@@ -63,6 +63,10 @@ Boundary parse_boundary(const std::string& text) {
     return parse_name("boundary", text, std::array{Boundary::geodesic, Boundary::free, Boundary::curvature});
 }
 
+SphereRoute parse_sphere_route(const std::string& text) {
+    return parse_name("sphere route", text, std::array{SphereRoute::robust, SphereRoute::direct});
+}
+
 std::optional<Geometry> parse_geometry(const std::string& text) {
     if (text == "auto") return std::nullopt;
     return parse_name("geometry", text,

@@ -13,6 +13,7 @@ namespace ricci::app {
 Scheme parse_scheme(const std::string& text);
 Method parse_method(const std::string& text);
 Boundary parse_boundary(const std::string& text);
+SphereRoute parse_sphere_route(const std::string& text);
 std::optional<Geometry> parse_geometry(const std::string& text);  // "auto": unset
 SweepSolverKind parse_solver(const std::string& text);
 bool parse_delaunay(const std::string& text);  // "isometric": true, "none": false

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "engine/flow/target.h"
+#include "engine/sphere/solve_sphere.h"
 
 namespace ricci {
 namespace {
@@ -93,6 +94,49 @@ std::string reason(Status status, Geometry geometry, const FlowOptions& options)
     }
 }
 
+bool goes_through_plane(const FlowSurface& surface, const FlowOptions& options, const FlowResult& result) {
+    const TargetKind target = options.target.value_or(TargetKind::flat);
+    const bool zero = target == TargetKind::flat || target == TargetKind::uniform;
+    return result.geometry == Geometry::spherical && options.sphere_route == SphereRoute::robust &&
+           options.method == Method::newton && options.cones.empty() && zero &&
+           (result.boundary == Boundary::geodesic || surface.topology.boundaries == 0) &&
+           sphere_route_exists(surface);
+}
+
+/// One third of the faces around each vertex. // V
+std::vector<double> vertex_areas(const SurfaceMesh& mesh) {
+    const std::vector<double> face = face_areas(mesh);
+    std::vector<double> area(static_cast<std::size_t>(mesh.connectivity.vertex_count), 0.0);
+    for (std::size_t h = 0; h < mesh.connectivity.tail.size(); ++h)
+        area[static_cast<std::size_t>(mesh.connectivity.tail[h])] += face[h / 3] / 3.0;
+    return area;
+}
+
+void flow_through_plane(const SurfaceMesh& mesh, const FlowSurface& surface, const CurvatureTarget& target,
+                        const FlowOptions& options, FlowResult& result) {
+    SphereOptions sphere;
+    sphere.tolerance = options.tolerance;
+    if (options.max_iterations > 0) sphere.max_iterations = options.max_iterations;
+    sphere.parallel = options.parallel;
+    sphere.mass = vertex_areas(mesh);
+    sphere.interrupted = options.interrupted;
+    sphere.progress = options.progress;
+    SphereResult solved = solve_sphere(surface, sphere);
+    result.outcome = std::move(solved.outcome);
+    result.message = std::move(solved.message);
+    result.extended_precision = solved.extended_precision;
+    // A solve that ended in the plane has no u for the sphere; the metric shown is then the initial one.
+    if (solved.reached_sphere) result.conformal_factor = std::move(solved.u);
+    std::unique_ptr<Metric> metric =
+        std::make_unique<ScaledMetric<double>>(surface, Geometry::spherical, options.parallel);
+    if (solved.extended_precision)
+        metric = std::make_unique<ScaledMetric<long double>>(surface, Geometry::spherical, options.parallel);
+    metric->move_to(result.conformal_factor);
+    metric->evaluate(false);
+    if (!solved.reached_sphere) result.outcome.residual_max = residual_max(metric->curvature(), target);
+    store(*metric, target, result);
+}
+
 /// Vertex scaling; falls back to extended precision where double stalls.
 void flow_by_scaling(const SurfaceMesh& mesh, const FlowOptions& options, FlowResult& result) {
     const FlowSurface surface = make_flow_surface(mesh, result.boundary != Boundary::free, options.delaunay);
@@ -113,6 +157,8 @@ void flow_by_scaling(const SurfaceMesh& mesh, const FlowOptions& options, FlowRe
         store(*metric, target, result);
         return;
     }
+    if (goes_through_plane(surface, options, result))
+        return flow_through_plane(mesh, surface, target, options, result);
     result.outcome = run(*metric, target, options, result.geometry, u);
     const Status status = result.outcome.status;
     // Precision helps at the rounding floor, not where a non-convex energy has no descent.
@@ -210,6 +256,10 @@ void flow_by_packing(const SurfaceMesh& mesh, const FlowOptions& options, FlowRe
 
 std::string_view name_of(Method method) {
     return method == Method::newton ? "newton" : "gradient";
+}
+
+std::string_view name_of(SphereRoute route) {
+    return route == SphereRoute::robust ? "robust" : "direct";
 }
 
 Geometry resolve_geometry(const FlowOptions& options, const Topology& topology) {

@@ -17,6 +17,12 @@ std::string_view name_of(Method method);
 /// given.
 enum class TargetKind : std::uint8_t { flat, uniform, boundary, values };
 
+/// How a closed sphere or a disk with geodesic boundary gets its spherical metric. robust: through the plane
+/// (engine/sphere/solve_sphere.h), for Newton and vertex scaling without cones or targets; everything else,
+/// and direct: Newton or gradient descent on the spherical energy, which is not convex (thesis section 7.1).
+enum class SphereRoute : std::uint8_t { robust, direct };
+std::string_view name_of(SphereRoute route);
+
 /// A prescribed cone: curvature of one vertex, replacing the target's.
 struct Cone {
     Index vertex = 0;
@@ -33,6 +39,7 @@ struct FlowOptions {
     std::vector<Cone> cones;
     std::optional<Boundary>
         boundary;  // unset: curvature when the target speaks of the boundary, else geodesic
+    SphereRoute sphere_route = SphereRoute::robust;
     bool delaunay = true;
     double tolerance = 1e-10;
     std::int32_t max_iterations = 0;  // 0: 200 (Newton), 100000 (gradient)
@@ -49,7 +56,8 @@ struct FlowResult {
     bool extended_precision = false;  // double stalled and lengths were evaluated in long double
     double gauss_bonnet_error = 0.0;  // |sum K + kappa A - 2 pi chi|
     double area = 0.0;
-    std::vector<double> conformal_factor;  // V; 0 for unused vertices
+    std::vector<double> conformal_factor;  // V; 0 for unused vertices. By the robust route to the sphere the
+                                           // centre of the vertices, weighted by area, is the sphere's
     std::vector<double> target_curvature;  // V
     std::vector<double> curvature;         // V
     std::optional<CirclePacking> packing;  // circle packings: how far the initial metric was off
