@@ -1,34 +1,12 @@
-#include <charconv>
 #include <filesystem>
 #include <string>
 
 #include "io/mesh/formats/file_bytes.h"
+#include "io/mesh/formats/mesh_text.h"
 #include "io/mesh/mesh_file.h"
 
 namespace ricci {
 namespace {
-
-/// Text with shortest round-trip decimals, whatever the locale.
-class MeshText {
-  public:
-    MeshText& operator<<(const char* words) {
-        text_ += words;
-        return *this;
-    }
-    MeshText& operator<<(Index number) { return append(number); }
-    MeshText& operator<<(double number) { return append(number); }
-    [[nodiscard]] const std::string& text() const { return text_; }
-
-  private:
-    template <class Number>
-    MeshText& append(Number number) {
-        char buffer[32];
-        const auto end = std::to_chars(buffer, buffer + sizeof buffer, number).ptr;
-        text_.append(buffer, end);
-        return *this;
-    }
-    std::string text_;
-};
 
 Index vertex_count(const SurfaceMesh& mesh) {
     return mesh.connectivity.vertex_count;

@@ -113,6 +113,12 @@ void write_item(hid_t items, hdf5::OutputFile& file, const std::string& name, co
         schema::write_flow(hdf5::create_group(group, "flow"),
                            schema::read_flow(stored, name, item.vertex_count, status), status);
     }
+    for (const auto& [kind, path] : item.result_files) {
+        const Handle source = hdf5::open_input(path);
+        const Handle stored = hdf5::open_group(source, item_path(name) + "/" + kind);
+        schema::write_result(hdf5::create_group(group, kind), schema::read_result(stored, name, kind, status),
+                             status);
+    }
     file.check_writes();
 }
 

@@ -72,8 +72,7 @@ void add_text(XXH3_state_t* state, std::string_view text) {
     XXH3_64bits_update(state, piece.data(), piece.size());
 }
 
-std::uint64_t digest_of_texts(const Input& input, hid_t type) {
-    const auto members = static_cast<std::size_t>(std::max(0, H5Tget_nmembers(type)));
+std::uint64_t digest_of_texts(const Input& input, hid_t type, std::size_t members) {
     const std::shared_ptr<XXH3_state_t> state = new_digest();
     for (const std::string& text : read_texts(input, type, members)) add_text(state.get(), text);
     return XXH3_64bits_digest(state.get());
@@ -218,7 +217,9 @@ std::vector<double> Input::read_row(hsize_t row) const {
 
 std::uint64_t Input::digest() const {
     const Handle type(H5Dget_type(dataset_), name_);
-    if (H5Tget_class(type) == H5T_COMPOUND) return digest_of_texts(*this, type);
+    if (H5Tis_variable_str(type) > 0) return digest_of_texts(*this, type, 1);
+    if (H5Tget_class(type) == H5T_COMPOUND)
+        return digest_of_texts(*this, type, static_cast<std::size_t>(std::max(0, H5Tget_nmembers(type))));
     const std::size_t value_bytes = H5Tget_size(type);
     const std::shared_ptr<XXH3_state_t> state = new_digest();
     std::vector<char> buffer;

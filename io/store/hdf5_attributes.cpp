@@ -66,6 +66,18 @@ Handle text_type() {
     return type;
 }
 
+std::vector<std::string> attribute_names(hid_t object) {
+    std::vector<std::string> names;
+    const auto collect = [](hid_t, const char* name, const H5A_info_t*, void* list) -> herr_t {
+        static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+        return 0;
+    };
+    hsize_t start = 0;
+    check(H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, &start, collect, &names),
+          name_of(object) + ": cannot list the attributes");
+    return names;
+}
+
 void write_text_attribute(hid_t object, const char* name, const std::string& text) {
     const Handle space(H5Screate(H5S_SCALAR), name);
     write_texts(object, name, {text}, space);

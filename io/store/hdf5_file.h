@@ -19,6 +19,7 @@
 
 #include "io/mesh/mesh_file.h"
 #include "io/store/checked_driver.h"
+#include "io/store/stored_text.h"
 
 namespace ricci::hdf5 {
 
@@ -96,11 +97,10 @@ Handle open_group(hid_t parent, const std::string& name);
 /// Names of all links, in order of creation where the group tracks it. Throws FileError.
 std::vector<std::string> link_names(hid_t group);
 
-/// The text as the file stores it: bytes that are not valid UTF-8 become \xNN.
-std::string stored_text(const std::string& text);
-
 /// Attributes: text (variable-length UTF-8), lists of texts, numbers. Reading checks kind and size of the
 /// stored type. Throw FileError.
+/// attribute_names() lists all in ascending order.
+std::vector<std::string> attribute_names(hid_t object);
 void write_text_attribute(hid_t object, const char* name, const std::string& text);
 void write_texts_attribute(hid_t object, const char* name, const std::vector<std::string>& texts);
 std::string read_text_attribute(hid_t object, const char* name);
@@ -171,7 +171,7 @@ class Input {
     void read_into(hid_t type, void* values) const;
     /// One row of a matrix of doubles.
     [[nodiscard]] std::vector<double> read_row(hsize_t row) const;
-    /// XXH3-64 of the values, read in pieces; of tables of texts, of the texts.
+    /// XXH3-64 of the values, read in pieces; of texts and tables of texts, of lengths and contents.
     [[nodiscard]] std::uint64_t digest() const;
 
   private:
@@ -180,8 +180,8 @@ class Input {
     Shape shape_;
 };
 
-/// Values of a type made of variable-length texts, `texts` in row order, and back (`members` texts per
-/// value).
+/// Values of a type made of variable-length texts (text_type() or a table of such columns), `texts` in row
+/// order, and back (`members` texts per value).
 void write_texts(hid_t parent, const std::string& name, hid_t type, const Shape& shape,
                  const std::vector<const char*>& texts);
 std::vector<std::string> read_texts(const Input& input, hid_t type, std::size_t members);

@@ -19,14 +19,19 @@ struct JournalHeader {
     std::vector<std::string> status_names;
 };
 
-/// One fact. `kind` is "item", "sweep" or "flow" (a segment: name, item, checksum and, for "sweep",
-/// vertices), "failure" (kept in the line itself), "retract" (drops the failure of the same item and stage),
-/// "drop" (the segment `name` turned out damaged) or "base" (the complete result file is itself a segment).
+/// One fact. `kind` is "failure" (kept in the line itself), "retract" (drops the failure of the same item and
+/// stage), "drop" (the segment `name` turned out damaged), "base" (the complete result file is itself a
+/// segment) or what a segment holds: "item", "sweep", "flow" or the kind of a further result (name, item,
+/// checksum and, for "sweep", vertices).
 struct JournalEntry {
     std::string kind, name, item;
     std::vector<Index> vertices;  // ascending; stored as runs [first, count]
     std::uint64_t checksum = 0;   // XXH3-64 of the segment file
     FailureRecord failure;
+
+    [[nodiscard]] bool segment() const {
+        return kind != "failure" && kind != "retract" && kind != "drop" && kind != "base";
+    }
 };
 
 /// What a journal says.

@@ -44,6 +44,8 @@ StoredItem read_stored_item(hid_t items, const std::string& name, const StatusNa
         stored.sweep = read_sweep(hdf5::open_group(group, "sweep"), vertex_count, status);
     if (hdf5::has_link(group, "flow"))
         stored.flow = schema::read_flow(hdf5::open_group(group, "flow"), name, vertex_count, status);
+    for (const std::string& kind : schema::result_kinds(group))
+        stored.results.push_back(schema::read_result(hdf5::open_group(group, kind), name, kind, status));
     return stored;
 }
 

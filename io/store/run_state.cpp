@@ -44,6 +44,7 @@ RunState read_contents(const std::string& path, const std::string& recorded, con
         }
         if (hdf5::has_link(group, "sweep")) read_sweep(group, name, recorded, status, item);
         if (hdf5::has_link(group, "flow")) item.flow_file = recorded;
+        for (const std::string& kind : schema::result_kinds(group)) item.result_files.emplace(kind, recorded);
     }
     if (hdf5::has_link(file, "failures"))
         for (FailureRecord& failure : schema::read_failures(file))
@@ -59,6 +60,7 @@ void merge_contents(RunState& state, RunState part) {
             known.vertex_count = item.vertex_count;
         }
         if (known.flow_file.empty()) known.flow_file = item.flow_file;
+        known.result_files.merge(item.result_files);
         known.rows.merge(item.rows);
         known.factors.merge(item.factors);
     }

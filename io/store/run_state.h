@@ -22,9 +22,10 @@ struct FactorSource {
 
 /// What is finished of one item. Conformal factors and meshes stay on disk.
 struct ItemState {
-    std::string file;              // holds the item's mesh; empty: not stored
-    std::string flow_file;         // holds its flow; empty: none
-    std::size_t vertex_count = 0;  // V, once the mesh is stored
+    std::string file;                                 // holds the item's mesh; empty: not stored
+    std::string flow_file;                            // holds its flow; empty: none
+    std::map<std::string, std::string> result_files;  // kind of a further result: the file that holds it
+    std::size_t vertex_count = 0;                     // V, once the mesh is stored
     std::map<Index, SweepRow> rows;
     std::map<Index, FactorSource> factors;
 };

@@ -60,7 +60,7 @@ struct RunStore::Impl {
     bool resume_output();
     void require_same_run(const std::string& where, const std::string& fingerprint,
                           const std::vector<std::string>& status_names) const;
-    void write_segment(const char* kind, const std::string& item, std::vector<Index> vertices,
+    void write_segment(const std::string& kind, const std::string& item, std::vector<Index> vertices,
                        const std::function<void(hid_t item_group)>& fill);
     void require_open() const;
     void append(const JournalEntry& entry);
@@ -172,7 +172,7 @@ void RunStore::Impl::resume_journal() {
             state.failures.insert_or_assign(key, entry.failure);
         } else if (entry.kind == "retract") {
             state.failures.erase(key);
-        } else if (entry.kind != "drop" && !dropped.contains(entry.name)) {
+        } else if (entry.segment() && !dropped.contains(entry.name)) {
             resume_segment(entry);
         }
     }
@@ -183,7 +183,8 @@ void RunStore::Impl::resume_journal() {
 }
 
 // The protocol of a segment: every step is durable before the next one says so.
-void RunStore::Impl::write_segment(const char* kind, const std::string& item, std::vector<Index> vertices,
+void RunStore::Impl::write_segment(const std::string& kind, const std::string& item,
+                                   std::vector<Index> vertices,
                                    const std::function<void(hid_t item_group)>& fill) {
     require_open();
     const std::string name = fmt::format("{}-{:06}.h5", kind, next_segment++);
@@ -242,7 +243,7 @@ const ItemState* RunStore::Impl::find_item(const std::string& name) const {
     return found == state.items.end() ? nullptr : &found->second;
 }
 
-// The stored item that rows and flows may be added to.
+// The stored item that results may be added to.
 ItemState& RunStore::Impl::writable_item(const std::string& name) {
     require_open();
     const auto found = state.items.find(name);
@@ -296,6 +297,12 @@ bool RunStore::has_flow(const std::string& item) const {
     const std::lock_guard guard(impl_->mutex);
     const ItemState* found = impl_->find_item(item);
     return found != nullptr && !found->flow_file.empty();
+}
+
+bool RunStore::has_result(const std::string& item, const std::string& kind) const {
+    const std::lock_guard guard(impl_->mutex);
+    const ItemState* found = impl_->find_item(item);
+    return found != nullptr && found->result_files.contains(kind);
 }
 
 bool RunStore::has_failure(const FailureRecord& failure) const {
@@ -364,6 +371,18 @@ void RunStore::write_flow(const FlowRecord& flow) {
     if (!item.flow_file.empty()) throw std::invalid_argument("the flow of " + name + " is stored already");
     impl_->write_segment("flow", name, {}, [&](hid_t group) {
         schema::write_flow(hdf5::create_group(group, "flow"), flow, impl_->info.status);
+    });
+}
+
+void RunStore::write_result(const ResultGroup& result) {
+    const std::string name = hdf5::stored_text(result.item);
+    const std::lock_guard guard(impl_->mutex);
+    const ItemState& item = impl_->writable_item(name);
+    schema::require_valid(result, impl_->info.status);
+    if (item.result_files.contains(result.kind))
+        throw std::invalid_argument(fmt::format("the {} of {} is stored already", result.kind, name));
+    impl_->write_segment(result.kind, name, {}, [&](hid_t group) {
+        schema::write_result(hdf5::create_group(group, result.kind), result, impl_->info.status);
     });
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/mesh/mesh_file.h"
+#include "io/store/result_group.h"
 #include "kernels/surface_mesh.h"
 
 namespace ricci {
@@ -101,8 +102,8 @@ struct FailureRecord {
 /// A run in progress: every method is thread-safe; a write_ method returns once its segment is durable.
 /// Throws FileError on input/output failures (disk full, ...); the journal then still tells the truth, and
 /// the store can be used further. std::invalid_argument on records whose sizes do not fit together, on a
-/// vertex, item or flow that is stored already, and on rows and flows of an item that is not. A process that
-/// may meet a file size limit ignores SIGXFSZ, so that the limit becomes a FileError.
+/// vertex, item, flow or further result that is stored already, and on results of an item that is not. A
+/// process that may meet a file size limit ignores SIGXFSZ, so that the limit becomes a FileError.
 class RunStore {
   public:
     /// Starts `output`.parts afresh (removing left-overs) or, with `resume`, continues what its journal
@@ -121,6 +122,7 @@ class RunStore {
     [[nodiscard]] std::vector<Index> finished_vertices(const std::string& item) const;  // ascending
     [[nodiscard]] std::vector<SweepRow> finished_rows(const std::string& item) const;   // ascending by vertex
     [[nodiscard]] bool has_flow(const std::string& item) const;
+    [[nodiscard]] bool has_result(const std::string& item, const std::string& kind) const;  // a further one
     [[nodiscard]] bool has_failure(const FailureRecord& failure) const;  // same item and stage
     [[nodiscard]] std::vector<FailureRecord> failures() const;           // in order of item and stage
     /// What resuming did not believe (torn journal line, damaged segment and the rows lost with it), for the
@@ -130,6 +132,7 @@ class RunStore {
     void write_item(const ItemRecord& item);
     void write_sweep_block(const SweepBlock& block);
     void write_flow(const FlowRecord& flow);
+    void write_result(const ResultGroup& result);
     void write_failure(const FailureRecord& failure);    // replaces one of the same item and stage
     void retract_failure(const FailureRecord& failure);  // before a failed item is tried again; none: no-op
 
@@ -155,6 +158,7 @@ struct StoredItem {
     ItemRecord item;
     std::optional<StoredSweep> sweep;
     std::optional<FlowRecord> flow;
+    std::vector<ResultGroup> results{};  // ascending by kind
 };
 struct StoredRun {
     RunInfo info;

@@ -217,15 +217,33 @@ KeptFactor read_extreme(hid_t sweep, const char* name, std::size_t vertex_count)
     return factor;
 }
 
+void write_status(hid_t group, std::uint8_t value, const StatusNames& status) {
+    const Handle type = status_type(status);
+    const std::string what = hdf5::name_of(group) + ": attribute status";
+    const Handle space(H5Screate(H5S_SCALAR), what);
+    const Handle attribute(H5Acreate2(group, "status", type, space, H5P_DEFAULT, H5P_DEFAULT), what);
+    hdf5::check(H5Awrite(attribute, type, &value), what);
+}
+
+std::uint8_t read_status(hid_t group, const StatusNames& status) {
+    const std::string where = hdf5::name_of(group) + ": attribute status";
+    const Handle attribute(H5Aopen(group, "status", H5P_DEFAULT), where + " is missing");
+    const Handle type = status_type(status);
+    const Handle stored(H5Aget_type(attribute), where);
+    if (H5Tequal(stored, type) <= 0) throw FileError(where + " has other names than status_names");
+    const Handle space(H5Aget_space(attribute), where);
+    if (H5Sget_simple_extent_npoints(space) != 1) throw FileError(where + " is not one value");
+    std::uint8_t value = 0;
+    hdf5::check(H5Aread(attribute, type, &value), where);
+    return value;
+}
+
 void write_flow(hid_t group, const FlowRecord& flow, const StatusNames& status) {
     hdf5::write_text_attribute(group, "geometry", flow.geometry);
     hdf5::write_text_attribute(group, "scheme", flow.scheme);
     hdf5::write_text_attribute(group, "method", flow.method);
     hdf5::write_text_attribute(group, "boundary", flow.boundary);
-    const Handle type = status_type(status);
-    const Handle space(H5Screate(H5S_SCALAR), "flow status");
-    const Handle attribute(H5Acreate2(group, "status", type, space, H5P_DEFAULT, H5P_DEFAULT), "flow status");
-    hdf5::check(H5Awrite(attribute, type, &flow.status), "flow status");
+    write_status(group, flow.status, status);
     hdf5::write_attribute<std::int32_t>(group, "newton_iterations", flow.newton_iterations);
     hdf5::write_attribute<std::int32_t>(group, "flips", flow.flips);
     hdf5::write_attribute<double>(group, "residual_max", flow.residual_max);
@@ -254,12 +272,7 @@ FlowRecord read_flow(hid_t group, const std::string& item, std::size_t vertex_co
     flow.scheme = hdf5::read_text_attribute(group, "scheme");
     flow.method = hdf5::read_text_attribute(group, "method");
     flow.boundary = hdf5::read_text_attribute(group, "boundary");
-    const std::string where = hdf5::name_of(group) + ": attribute status";
-    const Handle attribute(H5Aopen(group, "status", H5P_DEFAULT), where + " is missing");
-    const Handle type = status_type(status);
-    const Handle stored(H5Aget_type(attribute), where);
-    if (H5Tequal(stored, type) <= 0) throw FileError(where + " has other names than status_names");
-    hdf5::check(H5Aread(attribute, type, &flow.status), where);
+    flow.status = read_status(group, status);
     flow.newton_iterations = hdf5::read_attribute<std::int32_t>(group, "newton_iterations");
     flow.flips = hdf5::read_attribute<std::int32_t>(group, "flips");
     flow.residual_max = hdf5::read_attribute<double>(group, "residual_max");

@@ -20,6 +20,7 @@ std::size_t vertex_slots(const ItemRecord& item);
 void require_valid(const ItemRecord& item);
 void require_valid(const SweepBlock& block, std::size_t vertex_count, const StatusNames& status);
 void require_valid(const FlowRecord& flow, std::size_t vertex_count, const StatusNames& status);
+void require_valid(const ResultGroup& result, const StatusNames& status);
 
 /// Stored value of "converged"; none when the names lack it.
 std::optional<std::uint8_t> converged_status(const StatusNames& status);
@@ -46,10 +47,23 @@ std::optional<Index> read_extreme_vertex(hid_t sweep, const char* name);
 /// Factor of best/ or worst/.
 KeptFactor read_extreme(hid_t sweep, const char* name, std::size_t vertex_count);
 
+/// The attribute `status` of a group, an enum over u1. Reading throws FileError when its names are not these.
+void write_status(hid_t group, std::uint8_t value, const StatusNames& status);
+std::uint8_t read_status(hid_t group, const StatusNames& status);
+
 /// Attributes and datasets of flow/.
 void write_flow(hid_t group, const FlowRecord& flow, const StatusNames& status);
 FlowRecord read_flow(hid_t group, const std::string& item, std::size_t vertex_count,
                      const StatusNames& status);
+
+/// Kinds of an item's further results in ascending order: its links but mesh, sweep and flow.
+std::vector<std::string> result_kinds(hid_t item_group);
+
+/// Attributes and arrays of a further result into (from) its group. Reading throws FileError on anything that
+/// a ResultGroup cannot hold, or that require_valid() refuses.
+void write_result(hid_t group, const ResultGroup& result, const StatusNames& status);
+ResultGroup read_result(hid_t group, const std::string& item, const std::string& kind,
+                        const StatusNames& status);
 
 /// The table /failures.
 void write_failures(hid_t root, const std::vector<FailureRecord>& failures);

@@ -104,6 +104,17 @@ void check_sweep(hid_t item, std::size_t vertex_count, const StatusNames& status
     if (converged) check_kept(sweep, rows, *converged, vertex_count, keep_count, complaints);
 }
 
+void check_results(hid_t item_group, const std::string& item, const StatusNames& status,
+                   Complaints& complaints) {
+    for (const std::string& kind : schema::result_kinds(item_group)) {
+        try {
+            schema::read_result(hdf5::open_group(item_group, kind), item, kind, status);
+        } catch (const FileError& error) {
+            complaints.emplace_back(error.what());
+        }
+    }
+}
+
 void check_item(hid_t items, const std::string& name, const StatusNames& status, Complaints& complaints) {
     try {
         const hdf5::Handle group = hdf5::open_group(items, name);
@@ -115,6 +126,7 @@ void check_item(hid_t items, const std::string& name, const StatusNames& status,
             if (flow.status >= status.names.size())
                 complaints.push_back("/items/" + name + "/flow: the status has no name");
         }
+        check_results(group, name, status, complaints);
     } catch (const FileError& error) {
         complaints.emplace_back(error.what());
     }
@@ -150,8 +162,7 @@ void check_parts(const std::string& folder, Complaints& complaints) {
         for (const JournalEntry& entry : contents.entries)
             if (entry.kind == "drop") dropped.insert(entry.name);
         for (const JournalEntry& entry : contents.entries) {
-            const bool segment = entry.kind == "item" || entry.kind == "sweep" || entry.kind == "flow";
-            if (!segment || dropped.contains(entry.name)) continue;
+            if (!entry.segment() || dropped.contains(entry.name)) continue;
             const std::string path = fmt::format("{}/{}", folder, entry.name);
             if (!std::filesystem::exists(path))
                 complaints.push_back(path + ": segment is missing");

@@ -73,12 +73,12 @@ TEST_P(StoreCrash, ResumedRunEqualsUndisturbedOne) {
         killed_at(folder.file("last.h5"), std::string(point) + ":" + std::to_string(passes + 1), false));
 }
 
-// Seven segments, eight journal lines after the first.
+// Eight segments, nine journal lines after the first.
 INSTANTIATE_TEST_SUITE_P(Points, StoreCrash,
-                         ::testing::Values(std::pair("segment_filled", 7), std::pair("segment_written", 7),
-                                           std::pair("segment_renamed", 7), std::pair("journal_before", 8),
-                                           std::pair("journal_half", 8), std::pair("journal_written", 8),
-                                           std::pair("segment_journalled", 7), std::pair("assembled", 1),
+                         ::testing::Values(std::pair("segment_filled", 8), std::pair("segment_written", 8),
+                                           std::pair("segment_renamed", 8), std::pair("journal_before", 9),
+                                           std::pair("journal_half", 9), std::pair("journal_written", 9),
+                                           std::pair("segment_journalled", 8), std::pair("assembled", 1),
                                            std::pair("assembled_renamed", 1), std::pair("parts_unproved", 2)),
                          [](const auto& tested) { return std::string(tested.param.first); });
 
@@ -88,7 +88,7 @@ TEST(StoreCrashes, KilledAgainAndAgain) {
     write_sample_run(folder.file("reference.h5"), false);
     int deaths = 0;
     while (killed_at(path, "segment_journalled:1", true)) ++deaths;
-    EXPECT_EQ(deaths, 7);  // each attempt finishes one segment, the eighth has none left
+    EXPECT_EQ(deaths, 8);  // each attempt finishes one segment, the ninth has none left
     EXPECT_EQ(digests(path), digests(folder.file("reference.h5")));
 }
 
@@ -174,6 +174,28 @@ TEST(StoreCrashes, DamagedSegmentIsDroppedAndRedone) {
         EXPECT_EQ(store.finished_vertices("a@32"), range(8, 16));
         ASSERT_EQ(store.notes().size(), 1U);  // of the mesh; the block was reported and dropped before
         EXPECT_NE(store.notes()[0].find("is missing"), std::string::npos) << store.notes()[0];
+    }
+    write_sample_run(path, true);
+    EXPECT_EQ(digests(path), digests(folder.file("reference.h5")));
+}
+
+TEST(StoreCrashes, DamagedResultIsDroppedAndRedone) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("run.h5");
+    write_sample_run(folder.file("reference.h5"), false);
+    ASSERT_TRUE(killed_at(path, "segment_journalled:8", false));
+    const std::string segment = path + ".parts/layout-000008.h5";
+    flip_bit(segment, fs::file_size(segment) / 2);
+    const std::vector<std::string> complaints = verify_structure(path);
+    ASSERT_EQ(complaints.size(), 2U);  // not assembled, and the segment
+    EXPECT_EQ(complaints[1], segment + ": segment does not match its checksum");
+    {
+        const RunStore store(path, sample_info(), true);
+        EXPECT_FALSE(store.has_result("a@32", "layout"));
+        EXPECT_TRUE(store.has_flow("a@32"));
+        ASSERT_EQ(store.notes().size(), 1U);
+        EXPECT_NE(store.notes()[0].find("layout of a@32 counts as unfinished"), std::string::npos)
+            << store.notes()[0];
     }
     write_sample_run(path, true);
     EXPECT_EQ(digests(path), digests(folder.file("reference.h5")));

@@ -42,6 +42,27 @@ std::string describe_item(const ItemRecord& item) {
                               exact(item.edge_length));
 }
 
+// Every kind of value as text; `exact` for doubles.
+struct Described {
+    std::string operator()(double value) const { return exact({value}); }
+    std::string operator()(const std::vector<double>& values) const { return exact(values); }
+    template <class Value>
+    std::string operator()(const Value& value) const {
+        return fmt::format("{}", value);
+    }
+};
+
+std::string describe_result(const ResultGroup& result) {
+    std::string text = fmt::format("{} {} {}\n", result.item, result.kind, result.status);
+    for (const ResultAttribute& attribute : result.attributes)
+        text += fmt::format("{} [{}] {}\n", attribute.name, attribute.value.index(),
+                            std::visit(Described(), attribute.value));
+    for (const ResultArray& array : result.arrays)
+        text += fmt::format("{} {} [{}] {}\n", array.path, array.shape, array.values.index(),
+                            std::visit(Described(), array.values));
+    return text;
+}
+
 }  // namespace
 
 std::string describe(const StoredRun& run) {
@@ -53,6 +74,7 @@ std::string describe(const StoredRun& run) {
         text += describe_item(item.item);
         if (item.sweep) text += describe_sweep(*item.sweep);
         if (item.flow) text += describe_flow(*item.flow);
+        for (const ResultGroup& result : item.results) text += describe_result(result);
     }
     for (const FailureRecord& failure : run.failures)
         text += fmt::format("{} {} {} {}\n", failure.item, failure.stage, failure.status, failure.message);
@@ -76,6 +98,7 @@ void write_sample_run(const std::string& path, bool resume) {
         store.write_sweep_block(sample_block(*item, unfinished(*item, item->vertices / 2, item->vertices)));
     }
     if (!store.has_flow(a.name)) store.write_flow(sample_flow(a));
+    if (!store.has_result(a.name, "layout")) store.write_result(sample_result(a));
     const FailureRecord failure{"c", "load", "invalid_input", "c.off: line 3: not a number"};
     if (!store.has_failure(failure)) store.write_failure(failure);
     store.assemble({a.name, b.name}, kSampleKeep);

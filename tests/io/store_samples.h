@@ -153,6 +153,36 @@ inline FlowRecord sample_flow(const ItemRecord& item) {
     return flow;
 }
 
+/// A result of a further kind with every type of attribute and array, subgroups, scalars and empty arrays; in
+/// the order in which it is read back.
+inline ResultGroup sample_result(const ItemRecord& item) {
+    ResultGroup result{item.name, "layout", 1};
+    result.attributes = {{"generators", std::int32_t{4}},
+                         {"holonomy_error", 2.5e-13},
+                         {"lifted", std::uint8_t{1}},
+                         {"sides", std::vector<std::string>{"a1", "b1", "a1'", "b1'"}},
+                         {"steps", std::int64_t{-5000000000}},
+                         {"surface", std::string("torus \xC3\xA9")},
+                         {"warnings", std::vector<std::string>{}}};
+    std::vector<double> corners;
+    std::vector<std::int32_t> vertices;
+    for (Index v = 0; v < item.vertices; ++v) {
+        corners.push_back(std::cos(1.0 + v));
+        corners.push_back(std::sin(1.0 + v));
+        vertices.push_back(v);
+    }
+    const auto rows = static_cast<std::uint64_t>(item.vertices);
+    result.arrays = {{"domain/side", {2}, std::vector<std::string>{"", "a1\nb1"}},
+                     {"empty", {0, 3}, std::vector<double>{}},
+                     {"generators/deep/er/bit", {2, 1, 2}, std::vector<std::uint8_t>{0, 1, 255, 3}},
+                     {"generators/matrix", {}, std::vector<double>{-0.0}},
+                     {"no_text", {0}, std::vector<std::string>{}},
+                     {"position", {rows, 2}, corners},
+                     {"title", {}, std::vector<std::string>{"one"}},
+                     {"vertex", {rows}, vertices}};
+    return result;
+}
+
 /// Checksum of every dataset's values but those named seconds, by path: equal maps, equal bits.
 inline void collect_digests(hid_t group, const std::string& prefix,
                             std::map<std::string, std::uint64_t>& all) {
@@ -179,7 +209,8 @@ inline std::map<std::string, std::uint64_t> digests(const std::string& path) {
 /// Everything read_run returns but seconds and the time of creation, as text.
 std::string describe(const StoredRun& run);
 
-/// Two items with sweeps, a flow and a failure, written as far as it is not finished yet, and assembled.
+/// Two items with sweeps, a flow, a result of a further kind and a failure, written as far as it is not
+/// finished yet, and assembled.
 void write_sample_run(const std::string& path, bool resume);
 
 inline const KeepPolicy kSampleKeep{true, true, 3};
