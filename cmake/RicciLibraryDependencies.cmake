@@ -15,6 +15,10 @@ find_path(HDF5_INCLUDE_DIR hdf5.h PATH_SUFFIXES hdf5/serial REQUIRED)
 find_library(HDF5_C_LIBRARY NAMES hdf5_serial hdf5 PATH_SUFFIXES hdf5/serial REQUIRED)
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
 find_library(XXHASH_LIBRARY xxhash REQUIRED)
+find_path(BOOST_MULTIPRECISION_INCLUDE_DIR boost/multiprecision/mpfr.hpp REQUIRED)
+find_path(MPFR_INCLUDE_DIR mpfr.h REQUIRED)
+find_library(MPFR_LIBRARY mpfr REQUIRED)
+find_library(GMP_LIBRARY gmp REQUIRED)
 
 add_library(ricci_io_dependencies INTERFACE IMPORTED)
 target_include_directories(ricci_io_dependencies SYSTEM INTERFACE ${HDF5_INCLUDE_DIR} ${XXHASH_INCLUDE_DIR})
@@ -22,7 +26,9 @@ target_link_libraries(ricci_io_dependencies INTERFACE
     ${HDF5_C_LIBRARY} ZLIB::ZLIB ${XXHASH_LIBRARY} fmt::fmt nlohmann_json::nlohmann_json)
 
 add_library(ricci_engine_dependencies INTERFACE IMPORTED)
-target_link_libraries(ricci_engine_dependencies INTERFACE fmt::fmt OpenMeshCore OpenMeshTools nanoflann::nanoflann)
+target_include_directories(ricci_engine_dependencies SYSTEM INTERFACE ${BOOST_MULTIPRECISION_INCLUDE_DIR} ${MPFR_INCLUDE_DIR})
+target_link_libraries(ricci_engine_dependencies INTERFACE
+    fmt::fmt OpenMeshCore OpenMeshTools nanoflann::nanoflann ${MPFR_LIBRARY} ${GMP_LIBRARY})
 
 if(RICCI_CHOLMOD)
     ricci_find(OpenMP COMPONENTS CXX)  # only to keep CHOLMOD's own parallel regions serial
