@@ -77,6 +77,7 @@ int run(int argc, char** argv) {
     add_generate(app, common, action);
     add_flow(app, common, action);
     add_sweep(app, common, action);
+    add_layout(app, common, action);
     add_verify(app, common, action);
     add_export(app, common, action);
     try {

@@ -16,6 +16,7 @@ using Action = std::function<int()>;
 void add_info(CLI::App& app, CommonOptions& common, Action& action);
 void add_generate(CLI::App& app, CommonOptions& common, Action& action);
 void add_flow(CLI::App& app, CommonOptions& common, Action& action);
+void add_layout(CLI::App& app, CommonOptions& common, Action& action);
 void add_sweep(CLI::App& app, CommonOptions& common, Action& action);
 void add_verify(CLI::App& app, CommonOptions& common, Action& action);
 void add_export(CLI::App& app, CommonOptions& common, Action& action);
