@@ -3,7 +3,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <limits>
+#include <map>
+#include <numbers>
 
 #include "engine/layout/polished_scales.h"
 #include "engine/layout/transport.inl"
@@ -83,14 +85,23 @@ Order breadth_first(const Domain& d, Index root) {
     return order;
 }
 
-/// A piece in the middle of the longest way through the domain.
+/// The piece that is the most sides away from the edge of the domain (without one, from piece 0).
 Index middle_piece(const Domain& d) {
-    Order order = breadth_first(d, 0);
-    order = breadth_first(d, order.piece.back());
-    std::vector<Index> way{order.piece.back()};
-    while (order.entered[at(way.back())] >= 0)
-        way.push_back(d.refinement.piece[at(order.entered[at(way.back())])]);
-    return way[way.size() / 2];
+    const CommonRefinement& r = d.refinement;
+    std::vector<std::uint8_t> reached(at(r.piece_count()), 0);
+    std::vector<Index> queue;
+    const auto reach = [&](Index p) {
+        if (reached[at(p)]) return;
+        reached[at(p)] = 1;
+        queue.push_back(p);
+    };
+    for (Index c = 0; c < r.corner_count(); ++c)
+        if (d.blocked[at(c)] || r.twin[at(c)] < 0) reach(r.piece[at(c)]);
+    if (queue.empty()) reach(0);
+    for (std::size_t k = 0; k < queue.size(); ++k)
+        for (Index c = r.first[at(queue[k])]; c < r.first[at(queue[k]) + 1]; ++c)
+            if (r.twin[at(c)] >= 0) reach(r.piece[at(r.twin[at(c)])]);
+    return queue.back();
 }
 
 /// The moves across every final halfedge. // 3F'
@@ -163,7 +174,7 @@ void number_vertices(const Domain& d, SurfaceLayout& layout, std::vector<Index>&
 /// Pairings from the middle of each side, spreads, and the closing error.
 template <class Real>
 void pair_sides(const std::vector<Isometry<Real>>& crossing, const Domain& d, const CutGraph& cut,
-                const std::vector<Isometry<Real>>& frame, SurfaceLayout& layout) {
+                const Order& order, const std::vector<Isometry<Real>>& frame, SurfaceLayout& layout) {
     const CommonRefinement& r = d.refinement;
     const int kappa = layout.kappa;
     const auto across = [&](Index c) {
@@ -190,7 +201,10 @@ void pair_sides(const std::vector<Isometry<Real>>& crossing, const Domain& d, co
         const Index t = r.twin[at(c)];
         if (t < 0) continue;
         const Index s = d.side_of[at(c)];
-        if (s < 0 && t < c) continue;
+        // Each side once; across those that the frames came over, they agree by construction.
+        if (s < 0 &&
+            (t < c || order.entered[at(r.piece[at(t)])] == c || order.entered[at(r.piece[at(c)])] == t))
+            continue;
         Isometry<Real> there = frame[at(r.piece[at(t)])];
         if (s >= 0) there = compose(kappa, element[at(s)], there);
         const auto error =
@@ -257,7 +271,8 @@ SurfaceLayout lay_out(const FinalMetric<Real>& metric, const Domain& d, const Cu
     layout.kappa = kappa;
     layout.root_piece = root;
     const std::vector<Isometry<Real>> crossing = all_crossings(metric, r.final_triangulation.connectivity);
-    std::vector<Isometry<Real>> frame = carry_frames(crossing, kappa, d, breadth_first(d, root));
+    const Order order = breadth_first(d, root);
+    std::vector<Isometry<Real>> frame = carry_frames(crossing, kappa, d, order);
     std::vector<Index> first_corner;
     number_vertices(d, layout, first_corner);
     std::vector<std::array<Real, 3>> position;
@@ -270,7 +285,7 @@ SurfaceLayout lay_out(const FinalMetric<Real>& metric, const Domain& d, const Cu
     for (const Index c : first_corner)
         position.push_back(apply(kappa, frame[at(r.piece[at(c)])], local_position(metric, r, c)));
     round_positions();
-    pair_sides(crossing, d, cut, frame, layout);
+    pair_sides(crossing, d, cut, order, frame, layout);
     if (place) {
         const Isometry<double> rough = placing(layout, r);
         Isometry<Real> motion = widened<Real>(rough);
@@ -330,25 +345,6 @@ StoredArea stored_area(const CommonRefinement& r, const SurfaceLayout& layout, I
     return area;
 }
 
-void count_orientations(const CommonRefinement& r, SurfaceLayout& layout) {
-    const PieceAreas areas = piece_areas(r);
-    for (Index p = 0; p < r.piece_count(); ++p) {
-        if (areas.flat[at(p)] < -areas.flat_rounding[at(p)] ||
-            areas.final_share[at(p)] < -areas.share_rounding[at(p)]) {
-            ++layout.flipped;
-        } else if (!(areas.flat[at(p)] > 0) || !(areas.final_share[at(p)] > 0)) {
-            ++layout.degenerate;
-        } else {
-            const StoredArea area = stored_area(r, layout, p);
-            if (!(std::abs(area.twice) > area.rounding)) {
-                ++layout.unresolved;
-            } else if (area.twice < 0) {
-                ++layout.flipped;
-            }
-        }
-    }
-}
-
 }  // namespace
 
 SurfaceLayout make_surface_layout(int kappa, const CommonRefinement& refinement, const Connectivity& input,
@@ -378,8 +374,27 @@ SurfaceLayout make_surface_layout(int kappa, const CommonRefinement& refinement,
     }
     const PieceWalks walks(refinement, input, basis);
     layout.base_frame = layout.frame[at(refinement.piece[at(walks.home(basis.base()))])];
-    count_orientations(refinement, layout);
     return layout;
+}
+
+void count_orientations(const CommonRefinement& r, SurfaceLayout& layout) {
+    layout.flipped = layout.degenerate = layout.unresolved = 0;
+    const PieceAreas areas = piece_areas(r);
+    for (Index p = 0; p < r.piece_count(); ++p) {
+        if (areas.flat[at(p)] < -areas.flat_rounding[at(p)] ||
+            areas.final_share[at(p)] < -areas.share_rounding[at(p)]) {
+            ++layout.flipped;
+        } else if (!(areas.flat[at(p)] > 0) || !(areas.final_share[at(p)] > 0)) {
+            ++layout.degenerate;
+        } else {
+            const StoredArea area = stored_area(r, layout, p);
+            if (!(std::abs(area.twice) > area.rounding)) {
+                ++layout.unresolved;
+            } else if (area.twice < 0) {
+                ++layout.flipped;
+            }
+        }
+    }
 }
 
 std::array<double, 2> conformal_point(int kappa, const std::array<double, 3>& p) {
@@ -398,37 +413,88 @@ std::array<double, 2> half_plane_point(const std::array<double, 3>& p) {
     return {-p[1] / below, 1 / below};
 }
 
+namespace {
+
+/// Points that are far apart compared with rounding, filed by where they are.
+class PointFile {
+  public:
+    /// `cell`: about half the least distance of two points; kappa as everywhere.
+    PointFile(int kappa, double cell) : kappa_(kappa), cell_(cell) {}
+
+    /// Whether the point is new.
+    bool insert(const std::array<double, 3>& p) {
+        const double across = std::hypot(p[0], p[1]);
+        const double r = kappa_ < 0 ? std::asinh(across) : across;
+        const double angle = std::atan2(p[1], p[0]);
+        // Rings of width `cell`, each cut into sectors about as long.
+        for (std::int64_t ring = ring_of(r) - 1; ring <= ring_of(r) + 1; ++ring)
+            for (std::int64_t turn = -1; turn <= 1; ++turn) {
+                const auto found = filed_.find({ring, wrapped(sector_of(ring, angle) + turn, ring)});
+                if (found == filed_.end()) continue;
+                for (const auto& q : found->second)
+                    if (near(p, q)) return false;
+            }
+        filed_[{ring_of(r), wrapped(sector_of(ring_of(r), angle), ring_of(r))}].push_back(p);
+        return true;
+    }
+
+  private:
+    [[nodiscard]] std::int64_t ring_of(double r) const { return static_cast<std::int64_t>(r / cell_); }
+    [[nodiscard]] std::int64_t sectors(std::int64_t ring) const {
+        const double r = (static_cast<double>(ring) + 0.5) * cell_;
+        const double around = 2 * std::numbers::pi * (kappa_ < 0 ? std::sinh(r) : r);
+        return std::max<std::int64_t>(3, static_cast<std::int64_t>(std::min(around / cell_, 1e15)));
+    }
+    [[nodiscard]] std::int64_t sector_of(std::int64_t ring, double angle) const {
+        return static_cast<std::int64_t>((angle / (2 * std::numbers::pi) + 0.5) *
+                                         static_cast<double>(sectors(ring)));
+    }
+    [[nodiscard]] std::int64_t wrapped(std::int64_t sector, std::int64_t ring) const {
+        const std::int64_t n = sectors(ring);
+        return ((sector % n) + n) % n;
+    }
+    [[nodiscard]] bool near(const std::array<double, 3>& p, const std::array<double, 3>& q) const {
+        // In units in which a step of `cell` at p is at least cell: rounding grows like the coordinates.
+        const double size = kappa_ < 0 ? p[2] : 1.0;
+        return std::hypot(p[0] - q[0], p[1] - q[1]) < 1e-3 * cell_ + 1e-7 * size;
+    }
+
+    int kappa_;
+    double cell_;
+    std::map<std::array<std::int64_t, 2>, std::vector<std::array<double, 3>>> filed_;
+};
+
+}  // namespace
+
 std::vector<Isometry<double>> tessellate(const SurfaceLayout& layout, std::size_t count,
                                          double max_distance) {
     std::vector<Isometry<double>> copies{{}};
-    // Images of a point in general position tell the copies apart.
-    const Isometry<double> probe = motion_to(layout.kappa, layout.position.front());
-    const auto key = [&](const Isometry<double>& g) {
-        const auto p = image_of_origin(layout.kappa, compose(layout.kappa, g, probe));
-        return p;
+    const int kappa = layout.kappa;
+    // Images of one point tell the copies apart; no element but the identity fixes a point.
+    const Isometry<double> probe = motion_to(kappa, layout.position.front());
+    const auto image = [&](const Isometry<double>& g) {
+        return image_of_origin(kappa, compose(kappa, g, probe));
     };
-    std::vector<std::array<double, 3>> seen{key({})};
-    const auto known = [&](const std::array<double, 3>& p) {
-        return std::any_of(seen.begin(), seen.end(), [&](const std::array<double, 3>& q) {
-            const double dx = p[0] - q[0], dy = p[1] - q[1], dt = p[2] - q[2];
-            const double chord = dx * dx + dy * dy + (layout.kappa < 0 ? -dt * dt : 0.0);
-            const double size = std::max(1.0, std::abs(p[2]));
-            return chord < 1e-6 + 1e-9 * size * size &&
-                   std::hypot(dx, dy) < 1e-3 * std::max(1.0, std::hypot(p[0], p[1]));
-        });
+    const auto distance = [&](const std::array<double, 3>& p, const std::array<double, 3>& q) {
+        const double chord = std::hypot(p[0] - q[0], p[1] - q[1]);
+        if (kappa == 0) return chord;
+        return 2 * std::asinh(std::sqrt(std::max(0.0, chord * chord - (p[2] - q[2]) * (p[2] - q[2]))) / 2);
     };
-    for (std::size_t k = 0; k < copies.size() && copies.size() < count; ++k)
+    double least = std::numeric_limits<double>::infinity();
+    for (const SidePairing& pairing : layout.pairings)
+        least = std::min(least, distance(image({}), image(pairing.element)));
+    if (layout.pairings.empty() || !(least > 0)) return copies;
+    PointFile seen(kappa, std::min(least / 4, 0.25));
+    seen.insert(image({}));
+    for (std::size_t k = 0; k < copies.size(); ++k)
         for (const SidePairing& pairing : layout.pairings) {
-            Isometry<double> next = compose(layout.kappa, copies[k], pairing.element);
-            if (layout.kappa < 0) normalise(layout.kappa, next);
-            const std::array<double, 3> origin = image_of_origin(layout.kappa, next);
+            if (copies.size() >= count) return copies;
+            Isometry<double> next = compose(kappa, copies[k], pairing.element);
+            normalise(kappa, next);
+            const std::array<double, 3> origin = image_of_origin(kappa, next);
             const double across = std::hypot(origin[0], origin[1]);
-            if (!((layout.kappa < 0 ? std::asinh(across) : across) <= max_distance)) continue;
-            const std::array<double, 3> p = key(next);
-            if (known(p)) continue;
-            seen.push_back(p);
-            copies.push_back(next);
-            if (copies.size() == count) break;
+            if (!((kappa < 0 ? std::asinh(across) : across) <= max_distance)) continue;
+            if (seen.insert(image(next))) copies.push_back(next);
         }
     return copies;
 }

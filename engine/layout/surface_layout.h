@@ -35,7 +35,8 @@ struct SurfaceLayout {
     double closing_error = 0.0;  // largest entry by which a frame carried to a piece across any of its sides,
                                  // uncut ones or (by the pairing) cut ones, differs from the piece's own
     int digits = 16;             // of the arithmetic
-    std::int64_t flipped = 0;    // pieces whose image is turned over
+    // By count_orientations:
+    std::int64_t flipped = 0;     // pieces whose image is turned over
     std::int64_t degenerate = 0;  // pieces of no area, in the input or in the image
     std::int64_t unresolved =
         0;  // pieces too small or too far out for the stored coordinates to show which way they turn
@@ -53,6 +54,9 @@ struct LayoutOptions {
 SurfaceLayout make_surface_layout(int kappa, const CommonRefinement& refinement, const Connectivity& input,
                                   const HomotopyBasis& basis, const CutGraph& cut,
                                   const LayoutOptions& options = {});
+
+/// Looks which way every piece turns: in its own final face, and by the stored positions.
+void count_orientations(const CommonRefinement& refinement, SurfaceLayout& layout);
 
 /// Coordinates of a position. Conformal: Poincare disk, plane, stereographic (from the far pole).
 std::array<double, 2> conformal_point(int kappa, const std::array<double, 3>& position);

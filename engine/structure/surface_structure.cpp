@@ -102,6 +102,7 @@ SurfaceStructure make_surface_structure(const SurfaceMesh& mesh, const Structure
     s.seconds.group = watch.lap();
     s.layout = make_surface_layout(s.kappa, *s.refinement, mesh.connectivity, *s.basis, s.cut,
                                    {options.seed_face, options.goal, digits, &scales});
+    count_orientations(*s.refinement, s.layout);
     s.seconds.layout = watch.lap();
     return s;
 }

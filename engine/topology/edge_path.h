@@ -23,12 +23,23 @@ inline Index step_tail(const Connectivity& connectivity, Step step) {
     return step >= 0 ? connectivity.tail[static_cast<std::size_t>(step)] : connectivity.head(~step);
 }
 inline Index step_head(const Connectivity& connectivity, Step step) {
-    return step >= 0 ? connectivity.head(step) : connectivity.tail[static_cast<std::size_t>(~step)];
+    const Index halfedge = halfedge_of(step);
+    return step >= 0 ? connectivity.head(halfedge) : connectivity.tail[static_cast<std::size_t>(halfedge)];
 }
 inline Step reversed_step(const Connectivity& connectivity, Step step) {
     if (step < 0) return ~step;
     const Index twin = connectivity.twin[static_cast<std::size_t>(step)];
     return twin == kNoTwin ? ~step : twin;
+}
+
+/// The vertices that a path comes through, from its first to its last; none of an empty path.
+inline std::vector<Index> vertices_of(const Connectivity& connectivity, std::span<const Step> path) {
+    std::vector<Index> vertices;
+    if (path.empty()) return vertices;
+    vertices.reserve(path.size() + 1);
+    for (const Step step : path) vertices.push_back(step_tail(connectivity, step));
+    vertices.push_back(step_head(connectivity, path.back()));
+    return vertices;
 }
 
 /// The same path walked from its end to its start.
