@@ -1,60 +1,12 @@
 #include "engine/app/layout_record.h"
 
-#include <algorithm>
-
 #include "engine/app/console.h"
+#include "engine/app/result_arrays.h"
 
 namespace ricci::app {
 namespace {
 
-std::size_t at(Index i) {
-    return static_cast<std::size_t>(i);
-}
-
-template <class T, std::size_t n>
-std::vector<T> flattened(const std::vector<std::array<T, n>>& rows) {
-    std::vector<T> values;
-    values.reserve(rows.size() * n);
-    for (const auto& row : rows) values.insert(values.end(), row.begin(), row.end());
-    return values;
-}
-
-/// Adds arrays of the shapes that occur.
-class Arrays {
-  public:
-    explicit Arrays(ResultGroup& group) : group_(&group) {}
-
-    template <class T>
-    void list(const std::string& path, std::vector<T> values) {
-        const auto size = static_cast<std::uint64_t>(values.size());
-        group_->arrays.push_back({path, {size}, std::move(values)});
-    }
-    template <class T, std::size_t n>
-    void rows(const std::string& path, const std::vector<std::array<T, n>>& values) {
-        group_->arrays.push_back({path, {values.size(), n}, flattened(values)});
-    }
-    /// Isometries as (Re a, Im a, Re b, Im b).
-    void isometries(const std::string& path, const std::vector<Isometry<double>>& values) {
-        std::vector<std::array<double, 4>> entries;
-        for (const auto& x : values) entries.push_back({x.a.re, x.a.im, x.b.re, x.b.im});
-        rows(path, entries);
-    }
-    /// Lists of different lengths, one after another: <path> and <path>_first.
-    void lists(const std::string& path, const std::vector<std::vector<Index>>& values) {
-        std::vector<Index> all, first{0};
-        for (const auto& one : values) {
-            all.insert(all.end(), one.begin(), one.end());
-            first.push_back(static_cast<Index>(all.size()));
-        }
-        list(path, std::move(all));
-        list(path + "_first", std::move(first));
-    }
-
-  private:
-    ResultGroup* group_;
-};
-
-void add_refinement(Arrays& arrays, const CommonRefinement& r) {
+void add_refinement(ResultArrays& arrays, const CommonRefinement& r) {
     const IntrinsicTriangulation<long double>& last = r.final_triangulation;
     arrays.list("final/tail", last.connectivity.tail);
     arrays.list("final/twin", last.connectivity.twin);
@@ -73,9 +25,10 @@ void add_refinement(Arrays& arrays, const CommonRefinement& r) {
     arrays.rows("refinement/flat", r.flat);
 }
 
-void add_layout(Arrays& arrays, const SurfaceStructure& s) {
+void add_layout(ResultArrays& arrays, const SurfaceStructure& s) {
     const SurfaceLayout& layout = s.layout;
     arrays.rows("position", layout.position);
+    arrays.isometries("frame", layout.frame);
     std::vector<std::array<double, 2>> conformal;
     for (const auto& p : layout.position) conformal.push_back(conformal_point(s.kappa, p));
     arrays.rows("conformal", conformal);
@@ -95,7 +48,7 @@ void add_layout(Arrays& arrays, const SurfaceStructure& s) {
     arrays.list("pairings/spread", spread);
 }
 
-void add_topology(Arrays& arrays, const SurfaceMesh& mesh, const SurfaceStructure& s) {
+void add_topology(ResultArrays& arrays, const SurfaceMesh& mesh, const SurfaceStructure& s) {
     std::vector<std::string> names;
     std::vector<Index> partner, boundary;
     std::vector<std::vector<Index>> halfedges;
@@ -111,18 +64,14 @@ void add_topology(Arrays& arrays, const SurfaceMesh& mesh, const SurfaceStructur
     arrays.lists("sides/halfedge", halfedges);
     std::vector<std::vector<Index>> loops;
     for (Index k = 0; k < s.basis->letters(); ++k) {
-        std::vector<Index> path;
-        const EdgePath steps = s.basis->loop_path(k);
-        for (const Step step : steps) path.push_back(step_tail(mesh.connectivity, step));
-        if (!steps.empty()) path.push_back(step_head(mesh.connectivity, steps.back()));
-        loops.push_back(std::move(path));
+        loops.push_back(vertices_of(mesh.connectivity, s.basis->loop_path(k)));
     }
     arrays.list("letters/name", s.basis->letter_names());
     arrays.lists("letters/path", loops);
     arrays.isometries("letters/element", s.group.letters);
 }
 
-void add_generators(Arrays& arrays, const SurfaceMesh& mesh, const SurfaceStructure& s) {
+void add_generators(ResultArrays& arrays, const SurfaceMesh& mesh, const SurfaceStructure& s) {
     std::vector<std::string> names, words;
     std::vector<Isometry<double>> elements;
     std::vector<std::array<double, 4>> half_plane;
@@ -135,23 +84,20 @@ void add_generators(Arrays& arrays, const SurfaceMesh& mesh, const SurfaceStruct
         elements.push_back(g.element);
         half_plane.push_back(half_plane_matrix(g.element));
         matrices.push_back(s.kappa == 0 ? plane_matrix(g.element) : projective_matrix(s.kappa, g.element));
-        std::vector<Index> path;
-        const EdgePath steps = s.basis->walk(g.word);
-        for (const Step step : steps) path.push_back(step_tail(mesh.connectivity, step));
-        if (!steps.empty()) path.push_back(step_head(mesh.connectivity, steps.back()));
-        paths.push_back(std::move(path));
+        paths.push_back(vertices_of(mesh.connectivity, s.basis->walk(g.word)));
     }
     arrays.list("generators/name", names);
     arrays.list("generators/word", words);
     arrays.lists("generators/path", paths);
     arrays.isometries("generators/element", elements);
-    if (s.kappa < 0) arrays.rows("generators/half_plane", half_plane);
-    arrays.rows("generators/matrix", matrices);
+    if (s.kappa < 0) arrays.matrices("generators/half_plane", 2, half_plane);
+    arrays.matrices("generators/matrix", 3, matrices);
 }
 
 }  // namespace
 
-ResultGroup make_layout_group(const std::string& item, const SurfaceMesh& mesh, const SurfaceStructure& s) {
+ResultGroup make_layout_group(const std::string& item, const SurfaceMesh& mesh, const SurfaceStructure& s,
+                              const std::vector<Isometry<double>>& copies) {
     ResultGroup group;
     group.item = item;
     group.kind = "layout";
@@ -173,11 +119,12 @@ ResultGroup make_layout_group(const std::string& item, const SurfaceMesh& mesh, 
         {"relator", to_text(s.basis->relator(), s.basis->letter_names())},
         {"doubled", static_cast<std::uint8_t>(s.refinement->doubled)}};
     group.attributes.insert(group.attributes.end(), more.begin(), more.end());
-    Arrays arrays(group);
+    ResultArrays arrays(group);
     add_refinement(arrays, *s.refinement);
     add_layout(arrays, s);
     add_topology(arrays, mesh, s);
     add_generators(arrays, mesh, s);
+    if (!copies.empty()) arrays.isometries("copies/element", copies);
     return group;
 }
 
@@ -229,50 +176,6 @@ nlohmann::json layout_json(const SurfaceStructure& s) {
                                {"group", s.seconds.group},
                                {"layout", s.seconds.layout}};
     return object;
-}
-
-LayoutModel parse_layout_model(const std::string& text) {
-    if (text == "auto" || text == "poincare" || text == "plane" || text == "disk" || text == "sphere")
-        return LayoutModel::conformal;
-    if (text == "klein") return LayoutModel::klein;
-    if (text == "half-plane") return LayoutModel::half_plane;
-    throw UsageError("unknown model '" + text +
-                     "' (known: auto, plane, poincare, klein, half-plane, disk, sphere)");
-}
-
-std::array<double, 2> model_point(LayoutModel model, int kappa, const std::array<double, 3>& position) {
-    if (kappa < 0 && model == LayoutModel::klein) return projective_point(position);
-    if (kappa < 0 && model == LayoutModel::half_plane) return half_plane_point(position);
-    return conformal_point(kappa, position);
-}
-
-TexturedMesh textured_surface(const SurfaceMesh& mesh, const SurfaceStructure& s, LayoutModel model) {
-    if (mesh.intrinsic()) throw UsageError("an intrinsic surface has no points in space to write");
-    const CommonRefinement& r = *s.refinement;
-    TexturedMesh out;
-    out.points = r.points;
-    const bool disk = s.kappa != 0 && !(s.kappa < 0 && model == LayoutModel::half_plane);
-    for (const auto& p : s.layout.position) {
-        std::array<double, 2> uv = model_point(model, s.kappa, p);
-        if (disk) uv = {(uv[0] + 1) / 2, (uv[1] + 1) / 2};
-        out.uv.push_back(uv);
-    }
-    for (Index c = 0; c < r.corner_count(); ++c)
-        out.corners.push_back({r.vertex[at(c)], s.layout.corner_vertex[at(c)]});
-    out.face_start = r.first;
-    return out;
-}
-
-TexturedMesh layout_surface(const SurfaceStructure& s, LayoutModel model) {
-    TexturedMesh out;
-    for (const auto& p : s.layout.position) {
-        const std::array<double, 2> uv = model_point(model, s.kappa, p);
-        out.points.push_back(s.kappa > 0 ? Point{p[0], p[1], p[2]} : Point{uv[0], uv[1], 0.0});
-        out.uv.push_back(uv);
-    }
-    for (const Index v : s.layout.corner_vertex) out.corners.push_back({v, v});
-    out.face_start = s.refinement->first;
-    return out;
 }
 
 }  // namespace ricci::app

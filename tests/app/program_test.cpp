@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <nlohmann/json.hpp>
 #include <random>
 
 #include "io/mesh/mesh_file.h"
@@ -16,26 +15,14 @@
 namespace ricci {
 namespace {
 
+using ricci::testing::make;
+using ricci::testing::objects;
 using ricci::testing::ProgramResult;
 using ricci::testing::read_text;
 using ricci::testing::run_ricci;
 using ricci::testing::TemporaryFolder;
 using ricci::testing::write_text;
 using Words = std::vector<std::string>;
-
-std::string make(const TemporaryFolder& folder, const std::string& name, int faces) {
-    const std::string file = folder / (name + ".off");
-    EXPECT_EQ(
-        run_ricci(folder, {"generate", name, "--faces", std::to_string(faces), "-o", file, "-q"}).status, 0);
-    return file;
-}
-
-std::vector<nlohmann::json> objects(const std::string& text) {
-    std::vector<nlohmann::json> result;
-    std::istringstream lines(text);
-    for (std::string line; std::getline(lines, line);) result.push_back(nlohmann::json::parse(line));
-    return result;
-}
 
 bool same_bits(double a, double b) {
     return std::memcmp(&a, &b, sizeof a) == 0;

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -81,6 +82,22 @@ inline ProgramResult run_ricci(const TemporaryFolder& folder, const std::vector<
     result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     result.out = read_text(out);
     result.err = read_text(err);
+    return result;
+}
+
+/// Writes a generated surface of about so many faces into the folder; the path, empty where that failed.
+inline std::string make(const TemporaryFolder& folder, const std::string& name, int faces) {
+    const std::string file = folder / (name + ".off");
+    const ProgramResult made =
+        run_ricci(folder, {"generate", name, "--faces", std::to_string(faces), "-o", file, "-q"});
+    return made.status == 0 ? file : std::string();
+}
+
+/// The JSON objects of an output, one per line.
+inline std::vector<nlohmann::json> objects(const std::string& text) {
+    std::vector<nlohmann::json> result;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) result.push_back(nlohmann::json::parse(line));
     return result;
 }
 

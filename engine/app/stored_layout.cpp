@@ -1,0 +1,194 @@
+#include "engine/app/stored_layout.h"
+
+#include <algorithm>
+#include <map>
+
+#include "engine/app/console.h"
+#include "io/mesh/mesh_file.h"
+
+namespace ricci::app {
+namespace {
+
+std::size_t at(Index i) {
+    return static_cast<std::size_t>(i);
+}
+
+/// Arrays of a group by path.
+class StoredArrays {
+  public:
+    explicit StoredArrays(const ResultGroup& group) {
+        for (const ResultArray& array : group.arrays) arrays_[array.path] = &array;
+        item_ = group.item;
+    }
+    [[nodiscard]] bool has(const std::string& path) const { return arrays_.contains(path); }
+    template <class T>
+    [[nodiscard]] const std::vector<T>& list(const std::string& path) const {
+        const auto found = arrays_.find(path);
+        const auto* values =
+            found == arrays_.end() ? nullptr : std::get_if<std::vector<T>>(&found->second->values);
+        if (values == nullptr)
+            throw FileError(item_ + ": layout/" + path + " is missing or not of the type it should be");
+        return *values;
+    }
+    template <std::size_t n>
+    [[nodiscard]] std::vector<std::array<double, n>> rows(const std::string& path) const {
+        const std::vector<double>& values = list<double>(path);
+        if (values.size() % n != 0) throw FileError(item_ + ": layout/" + path + " has not the right shape");
+        std::vector<std::array<double, n>> result(values.size() / n);
+        for (std::size_t i = 0; i < values.size(); ++i) result[i / n][i % n] = values[i];
+        return result;
+    }
+    [[nodiscard]] std::vector<Isometry<double>> isometries(const std::string& path) const {
+        std::vector<Isometry<double>> result;
+        for (const auto& [ar, ai, br, bi] : rows<4>(path)) result.push_back({{ar, ai}, {br, bi}});
+        return result;
+    }
+    void require(bool holds, const char* what) const {
+        if (!holds) throw FileError(item_ + ": layout/: " + what);
+    }
+
+  private:
+    std::map<std::string, const ResultArray*> arrays_;
+    std::string item_;
+};
+
+CommonRefinement read_refinement(const StoredArrays& arrays) {
+    CommonRefinement r;
+    if (arrays.has("refinement/points")) r.points = arrays.rows<3>("refinement/points");
+    r.first = arrays.list<Index>("refinement/first");
+    r.input_face = arrays.list<Index>("refinement/input_face");
+    r.final_face = arrays.list<Index>("refinement/final_face");
+    r.vertex = arrays.list<Index>("refinement/vertex");
+    r.twin = arrays.list<Index>("refinement/twin");
+    r.input_halfedge = arrays.list<Index>("refinement/input_halfedge");
+    r.final_halfedge = arrays.list<Index>("refinement/final_halfedge");
+    r.weight = arrays.rows<3>("refinement/weight");
+    r.flat = arrays.rows<2>("refinement/flat");
+    const std::size_t corners = r.vertex.size();
+    arrays.require(r.first.size() == r.input_face.size() + 1 && r.final_face.size() == r.input_face.size() &&
+                       r.first.front() == 0 && at(r.first.back()) == corners &&
+                       std::is_sorted(r.first.begin(), r.first.end()),
+                   "pieces do not fit their corners");
+    arrays.require(r.twin.size() == corners && r.input_halfedge.size() == corners &&
+                       r.final_halfedge.size() == corners && r.weight.size() == corners &&
+                       r.flat.size() == corners,
+                   "corners have arrays of different lengths");
+    for (Index p = 0; p < r.piece_count(); ++p)
+        r.piece.insert(r.piece.end(), at(r.first[at(p) + 1] - r.first[at(p)]), p);
+    for (const Index v : r.vertex) r.vertex_count = std::max(r.vertex_count, v + 1);
+    const auto below = [](const std::vector<Index>& values, std::size_t limit) {
+        return std::all_of(values.begin(), values.end(),
+                           [&](Index v) { return v >= -1 && v < static_cast<Index>(limit); });
+    };
+    arrays.require(below(r.twin, corners) && (r.points.empty() || below(r.vertex, r.points.size())),
+                   "a corner names something that does not exist");
+    return r;
+}
+
+/// Lists that lie one after another: <path>, <path>_first.
+std::vector<std::vector<Index>> read_lists(const StoredArrays& arrays, const std::string& path) {
+    const auto& all = arrays.list<Index>(path);
+    const auto& first = arrays.list<Index>(path + "_first");
+    arrays.require(!first.empty() && first.front() == 0 && at(first.back()) == all.size() &&
+                       std::is_sorted(first.begin(), first.end()),
+                   "lists do not fit together");
+    std::vector<std::vector<Index>> lists;
+    for (std::size_t k = 0; k + 1 < first.size(); ++k)
+        lists.emplace_back(all.begin() + first[k], all.begin() + first[k + 1]);
+    return lists;
+}
+
+CutGraph read_cut(const StoredArrays& arrays) {
+    CutGraph cut;
+    const auto& name = arrays.list<std::string>("sides/name");
+    const auto& partner = arrays.list<Index>("sides/partner");
+    const auto& boundary = arrays.list<Index>("sides/boundary");
+    std::vector<std::vector<Index>> halfedges = read_lists(arrays, "sides/halfedge");
+    arrays.require(
+        partner.size() == name.size() && boundary.size() == name.size() && halfedges.size() == name.size(),
+        "sides do not fit together");
+    for (std::size_t s = 0; s < name.size(); ++s)
+        cut.sides.push_back({name[s], partner[s], boundary[s], std::move(halfedges[s])});
+    return cut;
+}
+
+}  // namespace
+
+StoredLayout read_layout_group(const ResultGroup& group) {
+    const StoredArrays arrays(group);
+    StoredLayout stored;
+    stored.refinement = read_refinement(arrays);
+    stored.cut = read_cut(arrays);
+    SurfaceLayout& layout = stored.layout;
+    for (const ResultAttribute& attribute : group.attributes)
+        if (attribute.name == "geometry" && std::holds_alternative<std::string>(attribute.value)) {
+            const std::string& geometry = std::get<std::string>(attribute.value);
+            layout.kappa = geometry == "hyperbolic" ? -1 : (geometry == "spherical" ? 1 : 0);
+        }
+    layout.position = arrays.rows<3>("position");
+    layout.refinement_vertex = arrays.list<Index>("refinement_vertex");
+    layout.corner_vertex = arrays.list<Index>("corner_vertex");
+    layout.frame = arrays.isometries("frame");
+    const auto base = arrays.isometries("base_frame");
+    const auto& side = arrays.list<Index>("pairings/side");
+    const auto element = arrays.isometries("pairings/element");
+    const auto& spread = arrays.list<double>("pairings/spread");
+    arrays.require(!base.empty() && element.size() == side.size() && spread.size() == side.size() &&
+                       layout.frame.size() == stored.refinement.input_face.size() &&
+                       layout.corner_vertex.size() == stored.refinement.vertex.size() &&
+                       layout.refinement_vertex.size() == layout.position.size(),
+                   "layout arrays differ in length");
+    arrays.require(std::all_of(layout.corner_vertex.begin(), layout.corner_vertex.end(),
+                               [&](Index v) { return v >= 0 && at(v) < layout.position.size(); }),
+                   "a corner names a layout vertex that does not exist");
+    layout.base_frame = base.front();
+    for (std::size_t k = 0; k < side.size(); ++k) layout.pairings.push_back({side[k], element[k], spread[k]});
+    stored.generators = read_lists(arrays, "generators/path");
+    if (arrays.has("copies/element")) stored.copies = arrays.isometries("copies/element");
+    return stored;
+}
+
+LayoutModel parse_layout_model(const std::string& text) {
+    if (text == "auto" || text == "poincare" || text == "plane" || text == "disk" || text == "sphere")
+        return LayoutModel::conformal;
+    if (text == "klein") return LayoutModel::klein;
+    if (text == "half-plane") return LayoutModel::half_plane;
+    throw UsageError("unknown model '" + text +
+                     "' (known: auto, plane, poincare, klein, half-plane, disk, sphere)");
+}
+
+std::array<double, 2> model_point(LayoutModel model, int kappa, const std::array<double, 3>& position) {
+    if (kappa < 0 && model == LayoutModel::klein) return projective_point(position);
+    if (kappa < 0 && model == LayoutModel::half_plane) return half_plane_point(position);
+    return conformal_point(kappa, position);
+}
+
+TexturedMesh textured_surface(const CommonRefinement& r, const SurfaceLayout& layout, LayoutModel model) {
+    if (r.points.empty()) throw UsageError("an intrinsic surface has no points in space to write");
+    TexturedMesh out;
+    out.points = r.points;
+    const bool disk = layout.kappa != 0 && !(layout.kappa < 0 && model == LayoutModel::half_plane);
+    for (const auto& p : layout.position) {
+        std::array<double, 2> uv = model_point(model, layout.kappa, p);
+        if (disk) uv = {(uv[0] + 1) / 2, (uv[1] + 1) / 2};
+        out.uv.push_back(uv);
+    }
+    for (Index c = 0; c < r.corner_count(); ++c)
+        out.corners.push_back({r.vertex[at(c)], layout.corner_vertex[at(c)]});
+    out.face_start = r.first;
+    return out;
+}
+
+TexturedMesh layout_surface(const CommonRefinement& r, const SurfaceLayout& layout, LayoutModel model) {
+    TexturedMesh out;
+    for (const auto& p : layout.position) {
+        const std::array<double, 2> uv = model_point(model, layout.kappa, p);
+        out.points.push_back(layout.kappa > 0 ? Point{p[0], p[1], p[2]} : Point{uv[0], uv[1], 0.0});
+        out.uv.push_back(uv);
+    }
+    for (const Index v : layout.corner_vertex) out.corners.push_back({v, v});
+    out.face_start = r.first;
+    return out;
+}
+
+}  // namespace ricci::app
