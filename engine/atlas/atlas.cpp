@@ -17,6 +17,9 @@ std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
 }
 
+// How far a hyperbolic chart may reach: coordinates there lose e^10 of the 16 digits.
+constexpr double kReach = 5.0;
+
 int curvature_of(AtlasKind kind) {
     return kind == AtlasKind::affine ? 0 : kind == AtlasKind::spherical ? 1 : -1;
 }
@@ -141,13 +144,15 @@ class Cover {
                     [&](std::span<const Index> pieces) { return layout_.lay_out(pieces); });
     }
 
-    /// Every beginning of what has grown is a disk: takes all of it, or half, or a quarter, ... Returns how
-    /// much, 0 where not even the start can be laid out.
+    /// Every beginning of what has grown is a disk: takes all of it, or half, or a quarter, ... until it is
+    /// one to one and near enough, or only the start is left. Returns how much, 0 where not even that can be
+    /// laid out.
     template <class LayOut>
     std::size_t add_largest(std::size_t start, std::span<const Index> grown, LayOut lay_out) {
         for (std::size_t count = grown.size(); count > 0; count = std::max(start, count / 2)) {
             std::optional<Chart> chart = lay_out(grown.first(count));
-            if (chart) {
+            const bool too_far = chart && atlas_.kappa < 0 && chart->radius > kReach && count > start;
+            if (chart && !too_far) {
                 for (const Index v : layout_.inside()) covered_[at(v)] = 1;
                 atlas_.charts.push_back(std::move(*chart));
                 return count;

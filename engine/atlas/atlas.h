@@ -63,11 +63,11 @@ struct Atlas {
 
 /// Charts are patches around seeds as far from each other as can be, grown face by face, nearest first, as
 /// long as they stay disks, and by `rings` rings beyond; then further charts around vertices not yet inside
-/// one, of faces or, where that fails, of pieces. A chart whose image would overlap itself (around a cone) is
-/// cut back. Deterministic. `refinement` and
-/// `metric` belong to the mesh with connectivity `input`. Throws std::invalid_argument where the kind does
-/// not fit the metric's curvature, a cone is not an interior vertex (or the surface is spherical), or
-/// `charts` or `rings` is negative.
+/// one, of faces or, where that fails, of pieces. A chart whose image would overlap itself (around a cone),
+/// or reach farther than 5 in the hyperbolic plane, is cut back. Deterministic. `refinement` and `metric`
+/// belong to the mesh with connectivity `input`. Throws std::invalid_argument where the kind does not fit the
+/// metric's curvature, a cone is not an interior vertex (or the surface is spherical), or `charts` or `rings`
+/// is negative.
 Atlas make_atlas(const Connectivity& input, const CommonRefinement& refinement,
                  const FinalMetric<double>& metric, const AtlasOptions& options);
 

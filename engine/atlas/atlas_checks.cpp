@@ -93,7 +93,7 @@ void check_cocycles(const CommonRefinement& r, const Atlas& atlas, AtlasChecks& 
             }
 }
 
-/// M^T G M - G.
+/// M^T G M - G, over the square of the largest entry of M: so much rounding is multiplied by.
 double form_error(int kappa, const Matrix& m) {
     if (kappa == 0) {
         Matrix turn{m[0], m[1], 0, m[3], m[4], 0, 0, 0, 1}, back{m[0], m[3], 0, m[1], m[4], 0, 0, 0, 1};
@@ -103,7 +103,8 @@ double form_error(int kappa, const Matrix& m) {
     const auto sign = static_cast<double>(kappa);
     const Matrix transposed{m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8]};
     const Matrix form{1, 0, 0, 0, 1, 0, 0, 0, sign};
-    return difference(product(transposed, product(form, m)), form);
+    const double size = difference(m, {});
+    return difference(product(transposed, product(form, m)), form) / (size * size);
 }
 
 void check_forms(const Atlas& atlas, AtlasChecks& checks) {

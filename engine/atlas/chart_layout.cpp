@@ -123,7 +123,8 @@ void ChartLayout::place_vertices(Chart& chart) {
                 known = x;
                 chart.vertices.push_back(v);
             }
-            chart.closing_error = std::max(chart.closing_error, point_distance(metric_.kappa, known, x));
+            const double apart = point_distance(metric_.kappa, known, x);
+            if (apart > chart.closing_error || std::isnan(apart)) chart.closing_error = apart;
         }
     std::sort(chart.vertices.begin(), chart.vertices.end());
     for (const Index v : chart.vertices) {

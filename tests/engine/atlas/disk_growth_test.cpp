@@ -60,6 +60,24 @@ TEST(DiskGrowth, EveryBeginningIsADisk) {
     }
 }
 
+TEST(DiskGrowth, DoesNotCloseARing) {
+    // Four quadrilaterals in a ring, inner vertices 0 ... 3, outer ones 4 ... 7: the last would share two
+    // opposite sides with the rest and no vertex besides.
+    PolygonSurface s;
+    s.vertex_count = 8;
+    for (Index q = 0; q < 4; ++q) {
+        s.first.push_back(4 * q);
+        const Index next = (q + 1) % 4, previous = (q + 3) % 4;
+        for (const Index v : {q, q + 4, next + 4, next}) s.vertex.push_back(v);
+        for (const Index t : {4 * previous + 2, Index{-1}, 4 * next, Index{-1}}) s.twin.push_back(t);
+        for (int k = 0; k < 4; ++k) s.polygon.push_back(q);
+    }
+    s.first.push_back(16);
+    DiskGrowth growth(s, std::vector<std::uint8_t>(8, 0));
+    const Index seed = 1;
+    EXPECT_EQ(growth.grow(std::span(&seed, 1), {}, kAll).size(), 3U);
+}
+
 TEST(DiskGrowth, StopsBeforeASphereCloses) {
     const PolygonSurface s = polygons_of(testing::icosahedron().connectivity);
     DiskGrowth growth(s, std::vector<std::uint8_t>(12, 0));
