@@ -110,7 +110,7 @@ Extras make_extras(const LayoutArguments& a, const SurfaceMesh& mesh, const Surf
     Extras extras;
     const bool quality = a.quality || (!a.svg.empty() && needs_quality(parse_picture_kind(a.picture)));
     if (!s.refinement || (!quality && a.atlas.empty())) return extras;
-    const FinalMetric<double> metric = make_final_metric(s.kappa, *s.refinement);
+    const FinalMetric<double>& metric = *s.metric;
     if (quality) extras.quality = measure_conformality(mesh, *s.refinement, metric);
     if (a.atlas.empty()) return extras;
     AtlasOptions options;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "engine/layout/final_metric.inl"
 #include "engine/layout/polished_scales.h"
 
 namespace ricci {
@@ -43,6 +44,13 @@ CommonRefinement refine(const SurfaceMesh& mesh, const FlowResult& flow, const F
     std::vector<double> u = flow.conformal_factor;
     for (double& value : u) value += log_scale;
     return make_common_refinement(mesh, u, flow.doubled, options.delaunay);
+}
+
+/// From scales solved in more digits where there are any.
+FinalMetric<double> rounded_metric(int kappa, const CommonRefinement& refinement, PolishedScales& scales) {
+    if (scales.scale.empty()) return make_final_metric(kappa, refinement);
+    const std::vector<long double> half = scales.solve<long double>(refinement).metric.half_chord;
+    return make_final_metric<double>(kappa, std::vector<double>(half.begin(), half.end()));
 }
 
 }  // namespace
@@ -103,6 +111,7 @@ SurfaceStructure make_surface_structure(const SurfaceMesh& mesh, const Structure
     s.layout = make_surface_layout(s.kappa, *s.refinement, mesh.connectivity, *s.basis, s.cut,
                                    {options.seed_face, options.goal, digits, &scales});
     count_orientations(*s.refinement, s.layout);
+    s.metric.emplace(rounded_metric(s.kappa, *s.refinement, scales));
     s.seconds.layout = watch.lap();
     return s;
 }

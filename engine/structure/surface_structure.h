@@ -30,6 +30,7 @@ struct SurfaceStructure {
     int kappa = 0;
     double log_scale = 0.0;
     std::optional<CommonRefinement> refinement;
+    std::optional<FinalMetric<double>> metric;  // of the final faces, from the most digits that were taken
     std::optional<HomotopyBasis> basis;
     CanonicalBasis canonical;
     CutGraph cut;

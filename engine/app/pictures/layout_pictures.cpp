@@ -283,7 +283,7 @@ SvgPicture draw_tessellation(const StoredLayout& s, LayoutModel model, double pi
         for (const auto& p : outline) {
             const PlanePoint q = point_of(s, model, apply(s.layout.kappa, g, p));
             // Points that would fall on the one before in the picture are left out.
-            const double least = disk ? 0.7 / pixels : 0.0;
+            const double least = disk ? 2.0 / pixels : 0.0;
             if (shape.empty() || std::hypot(q[0] - shape.back()[0], q[1] - shape.back()[1]) > least)
                 shape.push_back(q);
         }
