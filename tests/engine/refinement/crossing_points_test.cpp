@@ -75,7 +75,8 @@ TEST(CrossingPoints, NormalCurvesInAPolygonCrossWhereTheirEndsAlternate) {
         const Connectivity& now = polygon.curves.connectivity();
         const std::vector<Index> lowest = edge_halfedges(polygon.original);
         for (Index e = 0; e < polygon.original.edge_count; ++e) {
-            const Index a = polygon.original.tail[at(lowest[at(e)])], b = polygon.original.head(lowest[at(e)]);
+            const Index a = polygon.original.tail[at(lowest[at(e)])],
+                        b = polygon.original.head(lowest[at(e)]);
             Index expected = 0;
             for (const Index h : edge_halfedges(now)) {
                 const auto inside = [&](Index v) { return (v > a && v < b) || (v > b && v < a); };
@@ -110,7 +111,8 @@ TEST(CrossingPoints, StraightCurvesMeetLikeLinesInThePlane) {
         const std::vector<CrossingPoint> points = straight_crossings(now, log_length, polygon.paths);
         ASSERT_EQ(points.size(), polygon.paths.crossing.size());
         for_each_crossing(polygon, [&](Index h, std::size_t x) {
-            const Vector &a = corner[at(polygon.original.tail[at(h)])], &b = corner[at(polygon.original.head(h))];
+            const Vector &a = corner[at(polygon.original.tail[at(h)])],
+                         &b = corner[at(polygon.original.head(h))];
             const Index g = polygon.paths.crossing[x].halfedge;
             const Vector &p = corner[at(now.tail[at(g)])], &q = corner[at(now.head(g))];
             Vector meet = cross(cross(a, b), cross(p, q));

@@ -41,8 +41,10 @@ inline bool convex(const IntrinsicTriangulation<long double>& t, Index h) {
     const Connectivity& c = t.connectivity;
     if (!flippable(c, h)) return false;
     const Index w = c.twin[at(h)];
-    const double tail = corner_angle_at_tail(t.log_chord, h) + corner_angle_at_tail(t.log_chord, next_halfedge(w));
-    const double head = corner_angle_at_tail(t.log_chord, next_halfedge(h)) + corner_angle_at_tail(t.log_chord, w);
+    const double tail =
+        corner_angle_at_tail(t.log_chord, h) + corner_angle_at_tail(t.log_chord, next_halfedge(w));
+    const double head =
+        corner_angle_at_tail(t.log_chord, next_halfedge(h)) + corner_angle_at_tail(t.log_chord, w);
     return tail < std::numbers::pi - 0.2 && head < std::numbers::pi - 0.2;
 }
 
