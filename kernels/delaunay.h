@@ -21,7 +21,7 @@ struct DelaunayWorkspace {
     std::vector<Index> stack;            // halfedges to be looked at
     std::vector<std::uint8_t> on_stack;  // E
     std::vector<Index> touched_faces;    // both faces of every edge flipped by the last call, in order
-    std::vector<Index> flipped;          // the halfedge h of each of those flips, so that they can be made again
+    std::vector<Index> flipped;  // the halfedge h of each of those flips, so that they can be made again
 };
 
 /// Flips until every edge is Delaunay in the metric u: edge ij with opposite vertices k, l is Delaunay iff
