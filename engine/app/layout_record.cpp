@@ -30,6 +30,7 @@ void add_layout(ResultArrays& arrays, const SurfaceStructure& s) {
     arrays.rows("position", layout.position);
     arrays.isometries("frame", layout.frame);
     std::vector<std::array<double, 2>> conformal;
+    conformal.reserve(layout.position.size());
     for (const auto& p : layout.position) conformal.push_back(conformal_point(s.kappa, p));
     arrays.rows("conformal", conformal);
     arrays.list("refinement_vertex", layout.refinement_vertex);

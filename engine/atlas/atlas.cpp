@@ -92,6 +92,7 @@ class Cover {
         const std::vector<Index> owner = nearest_seeds(faces_, seeds);
         for (std::size_t s = 0; s < seeds.size(); ++s) {
             std::vector<std::uint8_t> allowed;
+            allowed.reserve(owner.size());
             for (const Index o : owner) allowed.push_back(o == static_cast<Index>(s) ? 1 : 0);
             add_rings(faces_, rings, allowed);
             add_chart_of_faces(std::span(&seeds[s], 1), allowed, std::numeric_limits<std::size_t>::max());

@@ -212,6 +212,7 @@ FaceColours sequential_colours(std::vector<double> value, const std::string& tit
 SvgPicture draw_domain(const StoredLayout& s, const DomainPicture& options) {
     const CommonRefinement& r = s.refinement;
     std::vector<PlanePoint> all;
+    all.reserve(s.layout.position.size());
     for (const auto& p : s.layout.position) all.push_back(point_of(s, options.model, p));
     const bool disk = draws_disk(s, options.model) || (s.layout.kappa > 0 && !s.cut.sides.empty());
     const ViewBox view = box_around(all, disk, options.colours ? 0.36 : 0.0);
@@ -345,6 +346,7 @@ SvgPicture draw_surface(const StoredLayout& s, const SurfacePicture& options) {
     for (std::size_t v = 0; v < seen.size(); ++v)
         seen[v] = tilt * (axes.transpose() * (Eigen::Vector3d(r.points[v].data()) - centre));
     std::vector<PlanePoint> all;
+    all.reserve(used.size());
     for (const Index v : used) all.push_back({seen[at(v)][0], seen[at(v)][1]});
     const ViewBox view = box_around(all, false, options.colours ? 0.3 : 0.0);
     const double narrow = std::min(view.width, view.height);
