@@ -64,9 +64,9 @@ void add_topology(ResultArrays& arrays, const SurfaceMesh& mesh, const SurfaceSt
     arrays.list("sides/boundary", boundary);
     arrays.lists("sides/halfedge", halfedges);
     std::vector<std::vector<Index>> loops;
-    for (Index k = 0; k < s.basis->letters(); ++k) {
+    loops.reserve(static_cast<std::size_t>(s.basis->letters()));
+    for (Index k = 0; k < s.basis->letters(); ++k)
         loops.push_back(vertices_of(mesh.connectivity, s.basis->loop_path(k)));
-    }
     arrays.list("letters/name", s.basis->letter_names());
     arrays.lists("letters/path", loops);
     arrays.isometries("letters/element", s.group.letters);

@@ -90,6 +90,13 @@ Isometry<Real> translation_and_turn(const Real& sine, const Real& cosine) {
     return {{Real(0), cosine}, {Real(0), -sine}};
 }
 
+/// Rounds to double.
+template <class Real>
+Isometry<double> rounded(const Isometry<Real>& x) {
+    return {{static_cast<double>(x.a.re), static_cast<double>(x.a.im)},
+            {static_cast<double>(x.b.re), static_cast<double>(x.b.im)}};
+}
+
 /// Scales back to |a|^2 + kappa |b|^2 = 1 after many products.
 template <class Real>
 void normalise(int kappa, Isometry<Real>& x) {

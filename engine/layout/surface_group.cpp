@@ -12,12 +12,6 @@ std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
 }
 
-template <class Real>
-Isometry<double> rounded(const Isometry<Real>& x) {
-    return {{static_cast<double>(x.a.re), static_cast<double>(x.a.im)},
-            {static_cast<double>(x.b.re), static_cast<double>(x.b.im)}};
-}
-
 /// Fills in elements, relator error and reach.
 template <class Real>
 void evaluate(const Holonomy<Real>& holonomy, int kappa, const CanonicalBasis& canonical,

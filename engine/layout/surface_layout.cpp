@@ -18,12 +18,6 @@ std::size_t at(Index i) {
 }
 
 template <class Real>
-Isometry<double> rounded(const Isometry<Real>& x) {
-    return {{static_cast<double>(x.a.re), static_cast<double>(x.a.im)},
-            {static_cast<double>(x.b.re), static_cast<double>(x.b.im)}};
-}
-
-template <class Real>
 Isometry<Real> widened(const Isometry<double>& x) {
     return {{Real(x.a.re), Real(x.a.im)}, {Real(x.b.re), Real(x.b.im)}};
 }

@@ -48,13 +48,8 @@ void keep_input_side(CommonRefinement& r, Index input_faces, Index triangulation
                 vertex = vertices++;
             }
             new_corner[at(c)] = corners;
+            r.copy_corner(c, corners, pieces);
             r.vertex[at(corners)] = vertex;
-            r.twin[at(corners)] = r.twin[at(c)];
-            r.input_halfedge[at(corners)] = r.input_halfedge[at(c)];
-            r.final_halfedge[at(corners)] = r.final_halfedge[at(c)];
-            r.weight[at(corners)] = r.weight[at(c)];
-            r.flat[at(corners)] = r.flat[at(c)];
-            r.piece[at(corners)] = pieces;
             ++corners;
         }
         first.push_back(corners);
@@ -151,6 +146,16 @@ CommonRefinement trivial_refinement(const SurfaceMesh& mesh, std::span<const dou
     CommonRefinement out = refine(mesh, zero, false, Flips::none);
     out.final_triangulation.log_chord.assign(log_chord.begin(), log_chord.end());
     return out;
+}
+
+void CommonRefinement::copy_corner(Index from, Index to, Index to_piece) {
+    vertex[at(to)] = vertex[at(from)];
+    twin[at(to)] = twin[at(from)];
+    input_halfedge[at(to)] = input_halfedge[at(from)];
+    final_halfedge[at(to)] = final_halfedge[at(from)];
+    weight[at(to)] = weight[at(from)];
+    flat[at(to)] = flat[at(from)];
+    piece[at(to)] = to_piece;
 }
 
 void CommonRefinement::resize(Index pieces, Index corners) {

@@ -47,6 +47,8 @@ struct CommonRefinement {
     std::vector<std::array<double, 2>> flat;  // position in the input's metric, unfolded piece by piece
     std::vector<Index> piece;                 // its piece
 
+    /// Overwrites corner `to` by corner `from`, as one of piece `to_piece`; twins are copied as they are.
+    void copy_corner(Index from, Index to, Index to_piece);
     /// Cuts the arrays of pieces and corners to these lengths; `first` is left alone.
     void resize(Index pieces, Index corners);
     [[nodiscard]] Index piece_count() const { return static_cast<Index>(input_face.size()); }

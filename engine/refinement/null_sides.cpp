@@ -89,13 +89,7 @@ Index collapse_null_sides(CommonRefinement& r) {
         for (Index c = r.first[at(p)]; c < r.first[at(p) + 1]; ++c) {
             if (!kept[at(c)]) continue;
             number[at(c)] = corners;
-            r.vertex[at(corners)] = r.vertex[at(c)];
-            r.twin[at(corners)] = r.twin[at(c)];
-            r.input_halfedge[at(corners)] = r.input_halfedge[at(c)];
-            r.final_halfedge[at(corners)] = r.final_halfedge[at(c)];
-            r.weight[at(corners)] = r.weight[at(c)];
-            r.flat[at(corners)] = r.flat[at(c)];
-            r.piece[at(corners)] = pieces;
+            r.copy_corner(c, corners, pieces);
             ++corners;
         }
         r.input_face[at(pieces)] = r.input_face[at(p)];
