@@ -173,6 +173,37 @@ void expect_agreeing_weights(const CommonRefinement& r) {
     }
 }
 
+/// On every piece the map is projective: weights are one linear image of the flat positions (x, y, 1). So
+/// what combination of three corners another one is holds for both.
+void expect_projective_pieces(const CommonRefinement& r) {
+    double worst = 0;
+    for (Index p = 0; p < r.piece_count(); ++p) {
+        const Index a = r.first[at(p)], end = r.first[at(p) + 1];
+        const auto area = [&](Index i, Index j, Index k) {
+            const auto &x = r.flat[at(i)], &y = r.flat[at(j)], &z = r.flat[at(k)];
+            return (y[0] - x[0]) * (z[1] - x[1]) - (y[1] - x[1]) * (z[0] - x[0]);
+        };
+        // The widest triangle at the first corner is the basis.
+        Index b = a + 1;
+        for (Index k = a + 1; k + 1 < end; ++k)
+            if (area(a, k, k + 1) > area(a, b, b + 1)) b = k;
+        const double whole = area(a, b, b + 1);
+        const double extent = std::hypot(r.flat[at(b)][0], r.flat[at(b)][1]) + std::sqrt(whole);
+        if (whole < 1e-6 * extent * extent) continue;  // 1e-16 extent^2 / whole is how well corners are known
+        for (Index k = a; k < end; ++k) {
+            const std::array<double, 3> share = {area(k, b, b + 1) / whole, area(a, k, b + 1) / whole,
+                                                 area(a, b, k) / whole};
+            for (std::size_t i = 0; i < 3; ++i) {
+                const double expected = share[0] * r.weight[at(a)][i] + share[1] * r.weight[at(b)][i] +
+                                        share[2] * r.weight[at(b + 1)][i];
+                worst = std::max(worst, std::abs(r.weight[at(k)][i] - expected));
+            }
+        }
+    }
+    // Weights are 1 at most; corners are known to 1e-10 in the basis.
+    EXPECT_LE(worst, 1e-9);
+}
+
 void expect_sound(const SurfaceMesh& mesh, const CommonRefinement& r) {
     const bool closed = topology_of(mesh.connectivity).boundaries == 0;
     EXPECT_EQ(check_connectivity(r.final_triangulation.connectivity), std::string());
@@ -181,6 +212,7 @@ void expect_sound(const SurfaceMesh& mesh, const CommonRefinement& r) {
     expect_right_areas(mesh, r, closed || !r.doubled);
     expect_divided_edges(mesh, r);
     expect_agreeing_weights(r);
+    expect_projective_pieces(r);
 }
 
 TEST(CommonRefinement, IsSoundOnSurfacesOfEveryKind) {
