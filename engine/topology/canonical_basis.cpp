@@ -4,6 +4,10 @@
 #include <limits>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
+
+#include "engine/topology/polygon_reducer.h"
+#include "engine/topology/relator_words.h"
 
 namespace ricci {
 namespace {
@@ -11,31 +15,6 @@ namespace {
 std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
 }
-
-/// Part of the cyclic word that is no longer cut: a handle [a,b] with words a, b, or a puncture with one
-/// word.
-struct Block {
-    std::vector<Word> words;
-
-    [[nodiscard]] bool is_handle() const { return words.size() == 2; }
-    /// The element it stands for.
-    [[nodiscard]] Word value() const { return is_handle() ? commutator(words[0], words[1]) : words[0]; }
-    void conjugate(std::span<const Index> by) {
-        for (Word& word : words) word = conjugated(word, by);
-    }
-};
-
-/// An element of the cyclic word: a letter or a block.
-struct Item {
-    Index letter = 0;  // 0: a block
-    Index block = -1;  // its number
-};
-
-/// x at `first`, y at `second`, x^-1 at `third`, y^-1 at `fourth`, in cyclic order.
-struct LinkedPair {
-    std::size_t first = 0, second = 0, third = 0, fourth = 0;
-    std::size_t cost = std::numeric_limits<std::size_t>::max();
-};
 
 void check_letters(const Word& relator, Index loops, Index punctures) {
     if (loops < 0 || loops % 2 != 0 || punctures < 0)
@@ -56,255 +35,71 @@ void check_letters(const Word& relator, Index loops, Index punctures) {
     }
 }
 
-/// The letters among items[begin, end).
-Word letters_of(const std::vector<Item>& items, std::size_t begin, std::size_t end) {
-    Word word;
-    for (std::size_t i = begin; i < end; ++i) {
-        if (items[i].letter != 0) word.push_back(items[i].letter);
-    }
-    return word;
-}
-
-class PolygonReducer {
-  public:
-    /// Punctures are blocks from the start, or letters that may enter the words of handles.
-    PolygonReducer(const Word& relator, Index loops, bool puncture_blocks) : loops_(loops) {
-        for (const Index letter : relator) {
-            if (generator_of(letter) < loops || !puncture_blocks) {
-                items_.push_back({letter, -1});
-            } else {
-                add_block({{Word{letter}}}, items_);
-            }
-        }
-    }
-
-    /// The blocks in order, when no handle letters are left.
-    std::vector<Block> reduce() {
-        for (Index made = 0; 2 * made < loops_; ++made) {
-            index_items();
-            const LinkedPair pair = cheapest_pair();
-            if (pair.cost == std::numeric_limits<std::size_t>::max())
-                throw std::invalid_argument("canonical basis: the polygon has more than one vertex");
-            make_handle(pair);
-        }
-        start_with_first_handle();
-        std::vector<Block> ordered;
-        for (const Item& item : items_)
-            ordered.push_back(item.letter != 0 ? Block{{Word{item.letter}}}
-                                               : std::move(blocks_[at(item.block)]));
-        return ordered;
-    }
-
-  private:
-    [[nodiscard]] bool handle_letter(std::size_t i) const {
-        return items_[i].letter != 0 && generator_of(items_[i].letter) < loops_;
-    }
-
-    void start_with_first_handle() {
-        const Index first =
-            static_cast<Index>(blocks_.size()) - loops_ / 2;  // blocks of punctures come before
-        const auto found = std::find_if(items_.begin(), items_.end(),
-                                        [first](const Item& item) { return item.block == first; });
-        if (found != items_.end()) std::rotate(items_.begin(), found, items_.end());
-    }
-
-    void add_block(Block block, std::vector<Item>& items) {
-        items.push_back({0, static_cast<Index>(blocks_.size())});
-        blocks_.push_back(std::move(block));
-    }
-
-    /// Where the inverse of each handle letter stands, and how many letters stand before each item, once
-    /// around and once again.
-    void index_items() {
-        const std::size_t n = items_.size();
-        partner_.assign(n, n);
-        before_.assign(2 * n + 1, 0);
-        std::vector<std::size_t> seen(at(loops_), n);
-        for (std::size_t i = 0; i < 2 * n; ++i)
-            before_[i + 1] = before_[i] + (items_[i % n].letter != 0 ? 1 : 0);
-        for (std::size_t i = 0; i < n; ++i) {
-            if (!handle_letter(i)) continue;
-            std::size_t& other = seen[at(generator_of(items_[i].letter))];
-            if (other != n) {
-                partner_[i] = other;
-                partner_[other] = i;
-            }
-            other = i;
-        }
-        index_blocks();
-    }
-
-    void index_blocks() {
-        const std::size_t n = items_.size();
-        words_below_.assign(before_.back() + 2, 0);
-        place_sum_.assign(before_.back() + 2, 0);
-        for (std::size_t i = 0; i < 2 * n; ++i) {
-            const Item& item = items_[i % n];
-            if (item.letter != 0) continue;
-            const std::size_t words = blocks_[at(item.block)].words.size();
-            words_below_[before_[i] + 1] += words;
-            place_sum_[before_[i] + 1] += words * before_[i];
-        }
-        std::partial_sum(words_below_.begin(), words_below_.end(), words_below_.begin());
-        std::partial_sum(place_sum_.begin(), place_sum_.end(), place_sum_.begin());
-    }
-
-    /// Letters strictly between two places, begin < end in places counted on from the first lap.
-    [[nodiscard]] std::size_t gap(std::size_t begin, std::size_t end) const {
-        return before_[end] - before_[begin + 1];
-    }
-
-    /// Letters that moving the blocks out of [first, fourth] adds, on both sides of each of their words.
-    [[nodiscard]] std::size_t moving_cost(std::size_t first, std::size_t fourth) const {
-        const std::size_t low = before_[first], high = before_[fourth + 1], middle = (low + high) / 2 + 1;
-        const std::size_t to_left =
-            (place_sum_[middle] - place_sum_[low + 1]) - low * (words_below_[middle] - words_below_[low + 1]);
-        const std::size_t to_right =
-            high * (words_below_[high] - words_below_[middle]) - (place_sum_[high] - place_sum_[middle]);
-        return 2 * (to_left + to_right);
-    }
-
-    void consider(std::size_t i, std::size_t j, std::size_t pi, std::size_t pj, LinkedPair& best) const {
-        const std::size_t a = gap(i, j), b = gap(j, pi), c = gap(pi, pj);
-        std::size_t cost = a + b + c + std::min(a, b);
-        if (cost >= best.cost) return;
-        cost += moving_cost(i, pj);
-        if (cost < best.cost) best = {i, j, pi, pj, cost};
-    }
-
-    [[nodiscard]] LinkedPair cheapest_pair() const {
-        const std::size_t n = items_.size();
-        LinkedPair best;
-        for (std::size_t i = 0; i < n; ++i) {
-            if (!handle_letter(i)) continue;
-            const std::size_t pi = partner_[i] > i ? partner_[i] : partner_[i] + n;
-            for (std::size_t j = i + 1; j < pi; ++j) {
-                if (!handle_letter(j % n)) continue;
-                std::size_t pj = partner_[j % n];
-                if (pj < i) pj += n;
-                if (pj > pi) consider(i, j, pi, pj, best);
-            }
-        }
-        return best;
-    }
-
-    /// Replaces the pair by its handle; blocks in its gaps go to the nearer side.
-    void make_handle(const LinkedPair& pair) {
-        std::rotate(items_.begin(), items_.begin() + static_cast<std::ptrdiff_t>(pair.first), items_.end());
-        const std::size_t y = pair.second - pair.first, x_inverse = pair.third - pair.first,
-                          end = pair.fourth - pair.first + 1;
-        const Word gap_a = letters_of(items_, 1, y), gap_b = letters_of(items_, y + 1, x_inverse),
-                   gap_c = letters_of(items_, x_inverse + 1, end - 1);
-        std::vector<Item> result, right;
-        slide_apart(end, result, right);
-        const auto append = [&result](const Word& word) {
-            for (const Index letter : word) result.push_back({letter, -1});
-        };
-        append(gap_c);
-        add_block(handle_of(gap_a, gap_b, gap_c, items_[0].letter, items_[y].letter), result);
-        append(gap_b);
-        append(gap_a);
-        result.insert(result.end(), right.begin(), right.end());
-        result.insert(result.end(), items_.begin() + static_cast<std::ptrdiff_t>(end), items_.end());
-        items_ = std::move(result);
-    }
-
-    static Block handle_of(const Word& gap_a, const Word& gap_b, const Word& gap_c, Index x, Index y) {
-        Word a = product(inverse(gap_c), Word{x}), b = product(gap_b, gap_a);
-        if (gap_a.size() < gap_b.size()) {
-            append_reduced(a, gap_a);
-            append_reduced(a, Word{y});
-        } else {
-            append_reduced(a, inverse(gap_b));
-        }
-        append_reduced(b, Word{y});
-        return {{std::move(a), std::move(b)}};
-    }
-
-    /// Moves the blocks among the first `end` items out to the nearer side: z H = (z H z^-1) z and
-    /// H z = z (z^-1 H z).
-    void slide_apart(std::size_t end, std::vector<Item>& left, std::vector<Item>& right) {
-        const Word letters = letters_of(items_, 0, end);
-        std::size_t before = 0;
-        for (std::size_t i = 0; i < end; ++i) {
-            if (items_[i].letter != 0) {
-                ++before;
-                continue;
-            }
-            const std::span<const Index> word(letters);
-            const bool to_left = 2 * before <= letters.size();
-            if (to_left) {
-                blocks_[at(items_[i].block)].conjugate(word.first(before));
-            } else {
-                blocks_[at(items_[i].block)].conjugate(inverse(word.subspan(before)));
-            }
-            (to_left ? left : right).push_back(items_[i]);
-        }
-    }
-
-    Index loops_;
-    std::vector<Item> items_;
-    std::vector<Block> blocks_;
-    std::vector<std::size_t> partner_;  // items
-    std::vector<std::size_t> before_;   // 2 * items + 1
-    // A block's place is the number of letters before it. Of the blocks at places below each number, how many
-    // words they have, and the sum of their places, counted once per word. // 2 * letters + 2
-    std::vector<std::size_t> words_below_, place_sum_;
+/// A block where it comes to stand among the canonical generators.
+struct PlacedBlock {
+    PolygonBlock block;    // its words are the generators
+    Index generator = -1;  // number of the first
+    bool stays = true;
+    bool to_left = false;  // moved past the blocks before it, else past those behind it
 };
 
 /// Brings the blocks of one kind together by moving them past the others, which keep their words.
 class BlockGatherer {
   public:
-    BlockGatherer(std::vector<Block> blocks, bool move_handles)
-        : blocks_(std::move(blocks)), move_handles_(move_handles), passed_(blocks_.size() + 1, 0) {}
+    BlockGatherer(const std::vector<PolygonBlock>& blocks, bool move_handles)
+        : passed_(blocks.size() + 1, 0) {
+        for (const PolygonBlock& block : blocks)
+            placed_.push_back({block, -1, block.is_handle() != move_handles, false});
+    }
 
-    CanonicalBasis gather() {
+    /// In their cyclic order, from where it is cheapest to cut it.
+    std::vector<PlacedBlock> gather() {
         rotate_to_cheapest();
         const std::size_t total = passed_.back();
-        std::vector<Word> ahead(blocks_.size() + 1);  // product of the blocks that stay, from each place on
-        for (std::size_t i = blocks_.size(); i > 0; --i)
-            ahead[i - 1] = moves(i - 1) ? ahead[i] : product(blocks_[i - 1].value(), ahead[i]);
+        std::vector<Word> ahead(placed_.size() + 1);  // product of the blocks that stay, from each place on
+        for (std::size_t i = placed_.size(); i > 0; --i)
+            ahead[i - 1] = placed_[i - 1].stays ? product(placed_[i - 1].block.value(), ahead[i]) : ahead[i];
         Word behind;
-        CanonicalBasis right, left;
-        for (std::size_t i = 0; i < blocks_.size(); ++i) {
-            const bool to_left = moves(i) && 2 * passed_[i] <= total;
-            if (!moves(i)) {
-                append_reduced(behind, blocks_[i].value());
-            } else {
-                blocks_[i].conjugate(to_left ? behind : inverse(ahead[i]));
+        for (std::size_t i = 0; i < placed_.size(); ++i) {
+            PlacedBlock& here = placed_[i];
+            here.to_left = !here.stays && 2 * passed_[i] <= total;
+            if (here.stays) {
+                append_reduced(behind, here.block.value());
+                continue;
             }
-            append(to_left ? left : right, blocks_[i]);
+            const Word by = here.to_left ? behind : inverse(ahead[i]);
+            for (Word& word : here.block.words) word = conjugated(word, by);
         }
-        for (std::size_t i = 0; i < left.a.size(); ++i) append(right, Block{{left.a[i], left.b[i]}});
-        for (const Word& word : left.punctures) append(right, Block{{word}});
-        return right;
+        number();
+        return std::move(placed_);
     }
 
   private:
-    [[nodiscard]] bool moves(std::size_t i) const { return blocks_[i].is_handle() == move_handles_; }
-
-    static void append(CanonicalBasis& basis, const Block& block) {
-        if (block.is_handle()) {
-            basis.a.push_back(block.words[0]);
-            basis.b.push_back(block.words[1]);
-        } else {
-            basis.punctures.push_back(block.words[0]);
-        }
+    /// Those that stayed or moved to the right, then those that moved to the left end, which is the right one
+    /// of the cyclic word.
+    void number() {
+        Index handles = 0, punctures = 0;
+        for (const PlacedBlock& here : placed_) handles += here.block.is_handle() ? 1 : 0;
+        Index next_handle = 0;
+        for (const bool left : {false, true})
+            for (PlacedBlock& here : placed_)
+                if (here.to_left == left)
+                    here.generator = here.block.is_handle() ? 2 * next_handle++ : 2 * handles + punctures++;
     }
 
     /// Starts the cyclic order where the distances to the nearer end, in letters passed, have the least sum;
     /// among equals with the block that comes first. Leaves in passed_ the letters before each block.
     void rotate_to_cheapest() {
-        const std::size_t n = blocks_.size();
+        const std::size_t n = placed_.size();
         std::vector<std::size_t> size(n);
-        for (std::size_t i = 0; i < n; ++i) size[i] = moves(i) ? 0 : blocks_[i].value().size();
+        for (std::size_t i = 0; i < n; ++i) size[i] = placed_[i].stays ? placed_[i].block.value().size() : 0;
         const std::size_t total = std::accumulate(size.begin(), size.end(), std::size_t{0});
         std::size_t best = 0, least = std::numeric_limits<std::size_t>::max();
         for (std::size_t start = 0; start < n; ++start) {
             std::size_t cost = 0, before = 0;
             for (std::size_t k = 0; k < n; ++k) {
                 const std::size_t i = (start + k) % n;
-                if (moves(i)) cost += std::min(before, total - before);
+                if (!placed_[i].stays) cost += std::min(before, total - before);
                 before += size[i];
             }
             if (cost < least) {
@@ -313,14 +108,114 @@ class BlockGatherer {
             }
         }
         const auto first = static_cast<std::ptrdiff_t>(best);
-        std::rotate(blocks_.begin(), blocks_.begin() + first, blocks_.end());
+        std::rotate(placed_.begin(), placed_.begin() + first, placed_.end());
         std::rotate(size.begin(), size.begin() + first, size.end());
         std::partial_sum(size.begin(), size.end(), passed_.begin() + 1);
     }
 
-    std::vector<Block> blocks_;
-    bool move_handles_;
+    std::vector<PlacedBlock> placed_;
     std::vector<std::size_t> passed_;  // blocks + 1
+};
+
+/// The reduced word with every letter replaced by its word.
+Word substituted(std::span<const Index> word, const std::vector<Word>& words) {
+    Word result;
+    for (const Index letter : word) {
+        const Index k = generator_of(letter);
+        if (k < 0 || at(k) >= words.size())
+            throw std::invalid_argument("canonical basis: letter " + std::to_string(letter) +
+                                        " is out of range");
+        append_reduced(result, letter > 0 ? words[at(k)] : inverse(words[at(k)]));
+    }
+    return result;
+}
+
+/// Generators in the order of their numbers.
+CanonicalBasis basis_of(const std::vector<PlacedBlock>& placed) {
+    CanonicalBasis basis;
+    std::vector<const PlacedBlock*> order;
+    order.reserve(placed.size());
+    for (const PlacedBlock& here : placed) order.push_back(&here);
+    std::ranges::sort(order, {}, &PlacedBlock::generator);
+    for (const PlacedBlock* here : order) {
+        const std::vector<Word>& words = here->block.words;
+        if (here->block.is_handle()) {
+            basis.a.push_back(words[0]);
+            basis.b.push_back(words[1]);
+        } else {
+            basis.punctures.push_back(words[0]);
+        }
+    }
+    return basis;
+}
+
+/// The moves of make_canonical_basis undone: basis letters as words in canonical generators.
+class LetterWords {
+  public:
+    LetterWords(const std::vector<PlacedBlock>& placed, std::size_t letters) : words_(letters) {
+        std::vector<std::size_t> order(placed.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        // The handle that was made last has no letters in its gaps but those of punctures that are letters.
+        std::ranges::stable_sort(order, [&](std::size_t i, std::size_t j) {
+            return rank(placed[i].block) > rank(placed[j].block);
+        });
+        find_moves(placed);
+        for (const std::size_t i : order) undo(placed[i], moves_[i]);
+    }
+
+    [[nodiscard]] std::vector<Word> take() { return std::move(words_); }
+
+  private:
+    /// Punctures that were letters to the end come first, those that were blocks last.
+    static Index rank(const PolygonBlock& block) {
+        if (block.is_handle()) return block.made;
+        return block.moved.empty() ? std::numeric_limits<Index>::max() : -1;
+    }
+
+    /// By which the gathering conjugated each block.
+    void find_moves(const std::vector<PlacedBlock>& placed) {
+        moves_.resize(placed.size());
+        Word behind, ahead;
+        for (std::size_t i = 0; i < placed.size(); ++i) {
+            if (placed[i].to_left) moves_[i] = behind;
+            if (placed[i].stays) append_reduced(behind, value(placed[i]));
+        }
+        for (std::size_t i = placed.size(); i > 0; --i) {
+            const PlacedBlock& here = placed[i - 1];
+            if (here.stays) ahead = product(value(here), ahead);
+            if (!here.stays && !here.to_left) moves_[i - 1] = inverse(ahead);
+        }
+    }
+
+    static Word value(const PlacedBlock& here) {
+        const Index first = here.generator + 1;
+        return here.block.is_handle() ? Word{first, first + 1, -first, -first - 1} : Word{first};
+    }
+
+    void set(Index letter, const Word& word) {
+        words_[at(generator_of(letter))] = letter > 0 ? word : inverse(word);
+    }
+
+    void undo(const PlacedBlock& here, const Word& move) {
+        // A generator w u w^-1, w = move moved, as u was when the block was made.
+        const Word back = product(inverse(substituted(here.block.moved, words_)), inverse(move));
+        const auto original = [&](Index k) { return conjugated(Word{here.generator + 1 + k}, back); };
+        if (!here.block.is_handle()) {
+            const Index letter = here.block.words[0][here.block.words[0].size() / 2];
+            set(letter, original(0));
+            return;
+        }
+        const HandleCut& cut = here.block.cut;
+        const Word a = original(0), b = original(1), gap_b = substituted(cut.gap_b, words_);
+        set(cut.y, product(inverse(substituted(product(cut.gap_b, cut.gap_a), words_)), b));
+        Word x = product(substituted(cut.gap_c, words_), a);
+        if (cut.along_y) append_reduced(x, inverse(b));
+        append_reduced(x, gap_b);
+        set(cut.x, x);
+    }
+
+    std::vector<Word> words_;  // per letter, empty until known
+    std::vector<Word> moves_;  // per block
 };
 
 }  // namespace
@@ -348,20 +243,30 @@ std::vector<std::string> CanonicalBasis::names() const {
     return names;
 }
 
+Word in_canonical_generators(const CanonicalBasis& basis, std::span<const Index> word, bool closed) {
+    const Word result = substituted(word, basis.letters);
+    return closed ? shortened_by_relator(basis.genus(), static_cast<Index>(basis.punctures.size()), result)
+                  : result;
+}
+
 CanonicalBasis make_canonical_basis(const Word& relator, Index loops, Index punctures) {
     check_letters(relator, loops, punctures);
     CanonicalBasis best;
+    std::vector<PlacedBlock> placed;
     std::size_t least = std::numeric_limits<std::size_t>::max();
     for (const bool puncture_blocks : {true, false}) {
-        const std::vector<Block> blocks = PolygonReducer(relator, loops, puncture_blocks).reduce();
+        const std::vector<PolygonBlock> blocks = reduce_polygon(relator, loops, puncture_blocks);
         for (const bool move_handles : {true, false}) {
-            CanonicalBasis basis = BlockGatherer(blocks, move_handles).gather();
+            std::vector<PlacedBlock> gathered = BlockGatherer(blocks, move_handles).gather();
+            CanonicalBasis basis = basis_of(gathered);
             if (basis.longest() >= least) continue;
             least = basis.longest();
             best = std::move(basis);
+            placed = std::move(gathered);
         }
         if (punctures == 0) break;
     }
+    best.letters = LetterWords(placed, at(loops + punctures)).take();
     return best;
 }
 

@@ -1,6 +1,7 @@
 // Canonical generators a1, b1, ..., ag, bg as words in the letters of a homotopy basis.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@ namespace ricci {
 struct CanonicalBasis {
     std::vector<Word> a, b;       // g each, reduced
     std::vector<Word> punctures;  // in the order of the product; conjugates w c w^-1, reduced
+    // The inverse substitution: each letter of the homotopy basis as a word in the canonical generators, of
+    // which 2i is a[i], 2i+1 is b[i], 2g+j is punctures[j]. It holds in the free group.
+    std::vector<Word> letters;
 
     [[nodiscard]] Index genus() const { return static_cast<Index>(a.size()); }
     /// The product above, reduced.
@@ -27,6 +31,11 @@ struct CanonicalBasis {
     /// "a1", "b1", "a2", ... // 2g
     [[nodiscard]] std::vector<std::string> names() const;
 };
+
+/// A word in basis letters as one in the canonical generators (numbered as in CanonicalBasis::letters): of a
+/// closed curve up to conjugation, shortened by the relator (relator_words.h); else as an element of the free
+/// group, reduced. Throws std::invalid_argument for letters out of range.
+Word in_canonical_generators(const CanonicalBasis& basis, std::span<const Index> word, bool closed = true);
 
 /// Cuts and pastes the polygon whose boundary is `relator`, letters 1 ... loops once with either sign, the
 /// next `punctures` letters once with any sign. A pair of linked letters x, y, cyclically x A y B x^-1 C y^-1

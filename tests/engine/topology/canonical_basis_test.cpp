@@ -40,12 +40,65 @@ Word random_relator(Index genus, Index punctures, Random& random) {
     return word;
 }
 
+/// Generators in the order of their numbers.
+std::vector<Word> generators_of(const CanonicalBasis& basis) {
+    std::vector<Word> words;
+    for (std::size_t i = 0; i < basis.a.size(); ++i) {
+        words.push_back(basis.a[i]);
+        words.push_back(basis.b[i]);
+    }
+    words.insert(words.end(), basis.punctures.begin(), basis.punctures.end());
+    return words;
+}
+
+/// Substituting generators into letters and letters into generators is the identity of the free group.
+/// Returns the length of the longest letter.
+std::size_t expect_inverse(const CanonicalBasis& basis) {
+    const std::vector<Word> generators = generators_of(basis);
+    EXPECT_EQ(basis.letters.size(), generators.size());
+    std::size_t longest = 0;
+    for (std::size_t k = 0; k < generators.size(); ++k) {
+        EXPECT_EQ(in_canonical_generators(basis, generators[k], false), Word{static_cast<Index>(k) + 1});
+        Word back;
+        for (const Index letter : basis.letters[k]) {
+            const Word& word = generators[at(generator_of(letter))];
+            append_reduced(back, letter > 0 ? word : inverse(word));
+        }
+        EXPECT_EQ(back, Word{static_cast<Index>(k) + 1});
+        longest = std::max(longest, basis.letters[k].size());
+    }
+    return longest;
+}
+
 TEST(CanonicalBasis, LeavesTheCanonicalRelatorAlone) {
     const CanonicalBasis basis = make_canonical_basis(Word{1, 2, -1, -2, 3, 4, -3, -4}, 4, 0);
     EXPECT_EQ(basis.a, (std::vector<Word>{{1}, {3}}));
     EXPECT_EQ(basis.b, (std::vector<Word>{{2}, {4}}));
     EXPECT_EQ(basis.names(), (std::vector<std::string>{"a1", "b1", "a2", "b2"}));
     EXPECT_EQ(basis.longest(), 1u);
+    EXPECT_EQ(basis.letters, (std::vector<Word>{{1}, {2}, {3}, {4}}));
+}
+
+TEST(CanonicalBasis, LettersAreWordsInTheGenerators) {
+    for (const TestSurface& surface : test_surfaces()) {
+        SCOPED_TRACE(surface.name);
+        expect_inverse(canonical_of(basis_of(surface)));
+    }
+    Random random(23);
+    for (int trial = 0; trial < 300; ++trial) {
+        SCOPED_TRACE(trial);
+        const Index genus = random.below(9), punctures = random.below(6);
+        expect_inverse(make_canonical_basis(random_relator(genus, punctures, random), 2 * genus, punctures));
+    }
+}
+
+TEST(CanonicalBasis, ClosedCurvesAreReducedCyclicallyAndByTheRelator) {
+    const CanonicalBasis basis = make_canonical_basis(Word{1, 2, -1, -2, 3, 4, -3, -4}, 4, 0);
+    EXPECT_EQ(in_canonical_generators(basis, Word{1, 2, -1}), Word{2});
+    EXPECT_EQ(in_canonical_generators(basis, Word{1, 2, -1, -2, 3}), Word{3});
+    EXPECT_EQ(in_canonical_generators(basis, Word{1, 2, -1}, false), (Word{1, 2, -1}));
+    EXPECT_TRUE(in_canonical_generators(basis, Word{}).empty());
+    EXPECT_THROW(in_canonical_generators(basis, Word{5}), std::invalid_argument);
 }
 
 TEST(CanonicalBasis, ProductIsConjugateToTheRelator) {
@@ -83,6 +136,7 @@ TEST(CanonicalBasis, ManagesManyHandlesAndPunctures) {
     const CanonicalBasis basis = make_canonical_basis(relator, 300, 100);
     EXPECT_TRUE(are_conjugate(basis.product(), relator));
     RecordProperty("longest_word", static_cast<int>(basis.longest()));
+    RecordProperty("longest_letter", static_cast<int>(expect_inverse(basis)));
 }
 
 TEST(CanonicalBasis, IntersectsAsTheStandardForm) {
