@@ -1,11 +1,8 @@
 #include "io/store/assemble.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <limits>
 #include <set>
 #include <stdexcept>
 
@@ -147,18 +144,13 @@ void require_all_items(const RunState& state, const std::vector<std::string>& it
             throw std::invalid_argument("item " + name + " is stored but not to be assembled");
 }
 
-std::string now() {
-    const auto seconds = std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::system_clock::now());
-    return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(seconds)));
-}
-
 }  // namespace
 
 void write_result_file(const std::string& path, const RunInfo& info, const RunState& state,
                        const std::vector<std::string>& items, const KeepPolicy& keep) {
     require_all_items(state, items);
     hdf5::write_file(path, [&](hdf5::OutputFile& file) {
-        schema::write_run_info(file.root(), info, now());
+        schema::write_run_info(file.root(), info, schema::now());
         const Handle group = hdf5::create_group(file.root(), "items");
         for (const std::string& name : items)
             write_item(group, file, name, state.items.at(name), keep, info.status);

@@ -1,48 +1,25 @@
 #include "io/store/run_store.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <mutex>
-#include <set>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "io/store/assemble.h"
-#include "io/store/durable.h"
-#include "io/store/journal.h"
 #include "io/store/run_state.h"
 #include "io/store/schema.h"
+#include "io/store/segment_folder.h"
 #include "io/store/verify_file.h"
 
 namespace ricci {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Removes everything in the folder, the journal first: segments without a journal prove nothing, whereas a
-// journal without its segments would cry wolf.
-void empty_folder(const std::string& folder) {
-    std::error_code error;
-    fs::remove(journal_path(folder), error);
-    if (!error) sync_path(folder);
-    fault_point("parts_unproved");
-    for (const auto& entry : fs::directory_iterator(folder, error)) {
-        std::error_code failed;
-        fs::remove_all(entry.path(), failed);
-        if (failed) throw system_error(entry.path().string(), "cannot remove", failed.value());
-    }
-    if (error) throw system_error(folder, "cannot empty the folder", error.value());
-}
-
-// The number in "sweep-000012.h5", 0 in other names.
-std::uint64_t segment_number(const std::string& name) {
-    const std::size_t dash = name.find('-');
-    return dash == std::string::npos ? 0 : std::strtoull(name.c_str() + dash + 1, nullptr, 10);
-}
 
 FailureRecord stored_failure(const FailureRecord& failure) {
     return {hdf5::stored_text(failure.item), hdf5::stored_text(failure.stage),
@@ -52,190 +29,100 @@ FailureRecord stored_failure(const FailureRecord& failure) {
 }  // namespace
 
 struct RunStore::Impl {
-    Impl(std::string output_path, RunInfo run_info, bool resume);
+    Impl(std::string output, RunInfo run_info, bool resume);
 
     void start_afresh(bool resume);
     void resume_journal();
-    void resume_segment(const JournalEntry& entry);
     bool resume_output();
-    void require_same_run(const std::string& where, const std::string& fingerprint,
-                          const std::vector<std::string>& status_names) const;
     void write_segment(const std::string& kind, const std::string& item, std::vector<Index> vertices,
                        const std::function<void(hid_t item_group)>& fill);
-    void require_open() const;
-    void append(const JournalEntry& entry);
-    void remove_parts() noexcept;
     ItemState& writable_item(const std::string& name);
     [[nodiscard]] const ItemState* find_item(const std::string& name) const;
+    [[nodiscard]] JournalHeader header() const {
+        return {hdf5::stored_text(info.fingerprint), info.status.names};
+    }
 
-    const std::string output, folder;
     const RunInfo info;
     mutable std::mutex mutex;
-    std::optional<FolderLock> lock;
-    std::optional<Journal> journal;
+    SegmentFolder parts;
     RunState state;
-    std::vector<std::string> notes;
-    std::uint64_t next_segment = 1;
-    bool has_work = false;  // the journal proves something that the output does not hold
 };
 
-RunStore::Impl::Impl(std::string output_path, RunInfo run_info, bool resume)
-    : output(std::move(output_path)), folder(output + ".parts"), info(std::move(run_info)) {
-    lock.emplace(folder);
-    try {
-        if (resume && fs::exists(journal_path(folder)))
-            resume_journal();
-        else
-            start_afresh(resume);
-    } catch (...) {
-        ::rmdir(folder.c_str());  // succeeds when nothing is in it, which is when nobody needs it
-        throw;
-    }
+RunStore::Impl::Impl(std::string output, RunInfo run_info, bool resume)
+    : info(std::move(run_info)), parts(std::move(output)) {
+    if (resume && parts.has_journal())
+        resume_journal();
+    else
+        start_afresh(resume);
 }
 
 void RunStore::Impl::start_afresh(bool resume) {
-    if (resume && !fs::is_empty(folder))
-        notes.push_back(folder + ": no journal, so its contents are removed");
-    empty_folder(folder);
+    if (resume && !fs::is_empty(parts.folder()))
+        parts.add_note(parts.folder() + ": no journal, so its contents are removed");
     const bool finished = resume && resume_output();
-    journal.emplace(Journal::create(folder, {hdf5::stored_text(info.fingerprint), info.status.names}));
-    if (finished) journal->append({"base", fs::path(output).filename().string(), "", {}, 0, {}});
-}
-
-void RunStore::Impl::require_same_run(const std::string& where, const std::string& fingerprint,
-                                      const std::vector<std::string>& status_names) const {
-    if (fingerprint != hdf5::stored_text(info.fingerprint))
-        throw std::invalid_argument(where +
-                                    ": made with another configuration; it cannot be resumed with this one");
-    if (status_names != info.status.names)
-        throw std::invalid_argument(where + ": made with other status names; it cannot be resumed");
+    parts.start(header());
+    if (finished) parts.append({"base", fs::path(parts.output()).filename().string(), "", {}, 0, {}});
 }
 
 // Takes the complete output as one big segment; false when there is none worth it.
 bool RunStore::Impl::resume_output() {
+    const std::string& output = parts.output();
     if (!fs::exists(output)) return false;
     const std::vector<std::string> complaints = verify_result_file(output);
     if (!complaints.empty()) {
-        notes.push_back(fmt::format("{}: not a sound result file, so nothing of it is used: {}", output,
-                                    complaints.front()));
+        parts.add_note(fmt::format("{}: not a sound result file, so nothing of it is used: {}", output,
+                                   complaints.front()));
         return false;
     }
     const hdf5::Session session;
     {
         const hdf5::Handle file = hdf5::open_input(output);
         const RunInfo stored = schema::read_run_info(file);
-        require_same_run(output, stored.fingerprint, stored.status.names);
+        SegmentFolder::require_same_run(output, {stored.fingerprint, stored.status.names}, header());
     }
     merge_contents(state, read_contents(output, output, info.status));
     return true;
 }
 
-void RunStore::Impl::resume_segment(const JournalEntry& entry) {
-    const std::string path = folder + "/" + entry.name;
-    std::string damage = "is missing";
-    if (fs::exists(path)) {
-        try {
-            damage = "does not match its checksum";
-            if (checksum_of_file(path) == entry.checksum) {
-                const hdf5::Session session;
-                merge_contents(state, read_contents(path, path, info.status));
-                return;
-            }
-        } catch (const FileError& error) {
-            damage = fmt::format("cannot be read ({})", error.what());
-        }
-    }
-    notes.push_back(
-        fmt::format("{}: segment {}; {} of {}{} counts as unfinished", path, damage, entry.kind, entry.item,
-                    entry.kind == "sweep" ? fmt::format(" ({} vertices from {} to {})", entry.vertices.size(),
-                                                        entry.vertices.empty() ? -1 : entry.vertices.front(),
-                                                        entry.vertices.empty() ? -1 : entry.vertices.back())
-                                          : ""));
-    journal->append({"drop", entry.name, "", {}, 0, {}});
-}
-
 void RunStore::Impl::resume_journal() {
-    const JournalContents contents = read_journal(folder);
-    require_same_run(folder, contents.header.fingerprint, contents.header.status_names);
-    notes = contents.notes;
-    journal.emplace(Journal::reopen(folder, contents));
-    std::set<std::string> dropped;
-    for (const JournalEntry& entry : contents.entries)
-        if (entry.kind == "drop") dropped.insert(entry.name);
-    for (const JournalEntry& entry : contents.entries) {
-        next_segment = std::max(next_segment, segment_number(entry.name) + 1);
-        has_work = has_work || (entry.kind != "base" && entry.kind != "drop");
-        const std::pair key(entry.failure.item, entry.failure.stage);
-        if (entry.kind == "base") {
-            resume_output();
-        } else if (entry.kind == "failure") {
-            state.failures.insert_or_assign(key, entry.failure);
-        } else if (entry.kind == "retract") {
-            state.failures.erase(key);
-        } else if (entry.segment() && !dropped.contains(entry.name)) {
-            resume_segment(entry);
-        }
-    }
-    std::set<std::string> used{journal_path(folder)};
-    for (const JournalEntry& entry : contents.entries) used.insert(folder + "/" + entry.name);
-    for (const auto& entry : fs::directory_iterator(folder))
-        if (!used.contains(folder + "/" + entry.path().filename().string())) fs::remove(entry.path());
+    parts.resume(
+        header(),
+        [&](const std::string& path, const JournalEntry&) {
+            merge_contents(state, read_contents(path, path, info.status));
+        },
+        [&](const JournalEntry& entry) {
+            const std::pair key(entry.failure.item, entry.failure.stage);
+            if (entry.kind == "base")
+                resume_output();
+            else if (entry.kind == "failure")
+                state.failures.insert_or_assign(key, entry.failure);
+            else
+                state.failures.erase(key);
+        },
+        [](const JournalEntry& entry) {
+            const std::string what = fmt::format("{} of {}", entry.kind, entry.item);
+            if (entry.kind != "sweep") return what;
+            return fmt::format("{} ({} vertices from {} to {})", what, entry.vertices.size(),
+                               entry.vertices.empty() ? -1 : entry.vertices.front(),
+                               entry.vertices.empty() ? -1 : entry.vertices.back());
+        });
 }
 
-// The protocol of a segment: every step is durable before the next one says so.
 void RunStore::Impl::write_segment(const std::string& kind, const std::string& item,
                                    std::vector<Index> vertices,
                                    const std::function<void(hid_t item_group)>& fill) {
-    require_open();
-    const std::string name = fmt::format("{}-{:06}.h5", kind, next_segment++);
-    const std::string path = folder + "/" + name;
-    const std::string temporary = path + ".tmp";
-    const hdf5::Session session;
-    try {
-        hdf5::write_file(temporary, [&](hdf5::OutputFile& file) {
-            const hdf5::Handle items = hdf5::create_group(file.root(), "items");
+    std::optional<RunState> part;
+    parts.write_segment(
+        {kind, "", item, std::move(vertices), 0, {}},
+        [&](hid_t root) {
+            const hdf5::Handle items = hdf5::create_group(root, "items");
             const hdf5::Handle group = hdf5::create_group(items, item);
             fill(group);
-            fault_point("segment_filled");
+        },
+        [&](const std::string& temporary, const std::string& path) {
+            part = read_contents(temporary, path, info.status);
         });
-        fault_point("segment_written");
-        {
-            const hdf5::Handle file = hdf5::open_input(temporary);
-            const std::vector<std::string> complaints = hdf5::checksum_complaints(file, "/");
-            if (!complaints.empty()) throw FileError(temporary + ": read back wrong: " + complaints.front());
-        }
-        RunState part = read_contents(temporary, path, info.status);
-        const std::uint64_t checksum = checksum_of_file(temporary);
-        rename_durably(temporary, path);
-        fault_point("segment_renamed");
-        append({kind, name, item, std::move(vertices), checksum, {}});
-        merge_contents(state, std::move(part));
-    } catch (const FileError&) {
-        ::unlink(temporary.c_str());
-        ::unlink(path.c_str());
-        throw;
-    }
-    fault_point("segment_journalled");
-}
-
-void RunStore::Impl::require_open() const {
-    if (!journal) throw std::logic_error("the run is assembled: it takes no more results");
-}
-
-void RunStore::Impl::append(const JournalEntry& entry) {
-    require_open();
-    journal->append(entry);
-    has_work = true;
-}
-
-void RunStore::Impl::remove_parts() noexcept {
-    journal.reset();
-    try {
-        empty_folder(folder);
-        fs::remove(folder);
-    } catch (const std::exception& error) {
-        notes.emplace_back(error.what());
-    }
+    merge_contents(state, std::move(*part));
 }
 
 const ItemState* RunStore::Impl::find_item(const std::string& name) const {
@@ -245,7 +132,7 @@ const ItemState* RunStore::Impl::find_item(const std::string& name) const {
 
 // The stored item that results may be added to.
 ItemState& RunStore::Impl::writable_item(const std::string& name) {
-    require_open();
+    if (!parts.open()) throw std::logic_error("the run is assembled: it takes no more results");
     const auto found = state.items.find(name);
     if (found == state.items.end() || found->second.file.empty())
         throw std::invalid_argument("item " + name + " is not stored yet");
@@ -259,7 +146,7 @@ RunStore::RunStore(std::string output, RunInfo info, bool resume) {
 }
 
 RunStore::~RunStore() {
-    if (impl_->journal && !impl_->has_work) impl_->remove_parts();
+    if (impl_->parts.open() && !impl_->parts.has_work()) impl_->parts.remove();
 }
 
 bool RunStore::has_item(const std::string& item) const {
@@ -320,7 +207,7 @@ std::vector<FailureRecord> RunStore::failures() const {
 
 std::vector<std::string> RunStore::notes() const {
     const std::lock_guard guard(impl_->mutex);
-    return impl_->notes;
+    return impl_->parts.notes();
 }
 
 void RunStore::write_item(const ItemRecord& item) {
@@ -389,7 +276,7 @@ void RunStore::write_result(const ResultGroup& result) {
 void RunStore::write_failure(const FailureRecord& failure) {
     const FailureRecord stored = stored_failure(failure);
     const std::lock_guard guard(impl_->mutex);
-    impl_->append({"failure", "", "", {}, 0, stored});
+    impl_->parts.append({"failure", "", "", {}, 0, stored});
     impl_->state.failures.insert_or_assign(std::pair(stored.item, stored.stage), stored);
 }
 
@@ -398,36 +285,24 @@ void RunStore::retract_failure(const FailureRecord& failure) {
     const std::lock_guard guard(impl_->mutex);
     const std::pair key(stored.item, stored.stage);
     if (!impl_->state.failures.contains(key)) return;
-    impl_->append({"retract", "", "", {}, 0, stored});
+    impl_->parts.append({"retract", "", "", {}, 0, stored});
     impl_->state.failures.erase(key);
 }
 
 void RunStore::assemble(const std::vector<std::string>& items, const KeepPolicy& keep) {
     const std::lock_guard guard(impl_->mutex);
-    impl_->require_open();
+    if (!impl_->parts.open()) throw std::logic_error("the run is assembled already");
     std::vector<std::string> names;
     names.reserve(items.size());
     for (const std::string& item : items) names.push_back(hdf5::stored_text(item));
-    const std::string temporary = impl_->folder + "/assembled.h5.tmp";
-    try {
-        {
-            const hdf5::Session session;
-            write_result_file(temporary, impl_->info, impl_->state, names, keep);
-        }
-        fault_point("assembled");
-        const std::vector<std::string> complaints = verify_result_file(temporary);
-        if (!complaints.empty()) throw FileError(temporary + ": read back wrong: " + complaints.front());
-        rename_durably(temporary, impl_->output);
-    } catch (const FileError&) {
-        ::unlink(temporary.c_str());
-        throw;
-    }
-    fault_point("assembled_renamed");
+    impl_->parts.replace_output([&](const std::string& temporary) {
+        write_result_file(temporary, impl_->info, impl_->state, names, keep);
+    });
     for (auto& [name, item] : impl_->state.items) {
-        if (!item.file.empty()) item.file = impl_->output;  // for read_item
+        if (!item.file.empty()) item.file = impl_->parts.output();  // for read_item
         item.factors.clear();
     }
-    impl_->remove_parts();
+    impl_->parts.remove();
 }
 
 }  // namespace ricci

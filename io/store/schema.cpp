@@ -1,8 +1,10 @@
 #include "io/store/schema.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <span>
 
 namespace ricci::schema {
@@ -34,16 +36,6 @@ std::vector<T> read_rows_of(hid_t group, const char* name, std::optional<std::si
     return values;
 }
 
-Handle status_type(const StatusNames& status) {
-    Handle type(H5Tenum_create(H5T_STD_U8LE), "status type");
-    for (std::size_t value = 0; value < status.names.size(); ++value) {
-        const auto stored = static_cast<std::uint8_t>(value);
-        hdf5::check(H5Tenum_insert(type, status.names[value].c_str(), &stored),
-                    "status name " + status.names[value]);
-    }
-    return type;
-}
-
 template <class Value>
 std::vector<Value> column(const std::vector<SweepRow>& rows, Value SweepRow::*member) {
     std::vector<Value> values;
@@ -70,6 +62,21 @@ Handle failure_type() {
 }
 
 }  // namespace
+
+Handle status_type(const StatusNames& status) {
+    Handle type(H5Tenum_create(H5T_STD_U8LE), "status type");
+    for (std::size_t value = 0; value < status.names.size(); ++value) {
+        const auto stored = static_cast<std::uint8_t>(value);
+        hdf5::check(H5Tenum_insert(type, status.names[value].c_str(), &stored),
+                    "status name " + status.names[value]);
+    }
+    return type;
+}
+
+std::string now() {
+    const auto seconds = std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::system_clock::now());
+    return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(seconds)));
+}
 
 void write_run_info(hid_t root, const RunInfo& info, const std::string& created) {
     hdf5::write_text_attribute(root, "format", "ricci");

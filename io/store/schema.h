@@ -25,6 +25,12 @@ void require_valid(const ResultGroup& result, const StatusNames& status);
 /// Stored value of "converged"; none when the names lack it.
 std::optional<std::uint8_t> converged_status(const StatusNames& status);
 
+/// The enum over u1 in which every status is stored.
+hdf5::Handle status_type(const StatusNames& status);
+
+/// Now, for the attribute `created`: ISO 8601, UTC.
+std::string now();
+
 /// Root attributes but `complete`. Reading throws FileError on a foreign format or version.
 void write_run_info(hid_t root, const RunInfo& info, const std::string& created);
 RunInfo read_run_info(hid_t root);

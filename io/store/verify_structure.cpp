@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <stdexcept>
 
 #include "io/store/durable.h"
 #include "io/store/guarded_child.h"
@@ -12,6 +13,7 @@
 #include "io/store/journal.h"
 #include "io/store/run_store.h"
 #include "io/store/schema.h"
+#include "io/store/schema_index.h"
 #include "io/store/verify_file.h"
 
 namespace ricci {
@@ -132,6 +134,20 @@ void check_item(hid_t items, const std::string& name, const StatusNames& status,
     }
 }
 
+void check_index(hid_t root, const StatusNames& status, Complaints& complaints) {
+    schema::read_descriptor_version(root);
+    try {
+        const std::vector<IndexEntry> entries = schema::read_entries(root, status);
+        schema::require_valid(entries, status);
+        const auto converged = schema::converged_status(status);
+        for (const IndexEntry& entry : entries)
+            if (entry.shape.status != converged)
+                complaints.push_back(entry.file + ": a shape that did not converge is among the entries");
+    } catch (const std::invalid_argument& error) {
+        complaints.emplace_back(error.what());
+    }
+}
+
 // Runs in the child.
 Complaints check_contents(const std::string& path) {
     Complaints complaints;
@@ -141,9 +157,15 @@ Complaints check_contents(const std::string& path) {
         const RunInfo info = schema::read_run_info(file);
         if (hdf5::read_attribute<std::int32_t>(file, "complete") != 1)
             complaints.emplace_back("attribute complete is not 1");
-        const hdf5::Handle items = hdf5::open_group(file, "items");
-        for (const std::string& name : hdf5::link_names(items))
-            check_item(items, name, info.status, complaints);
+        const std::string kind = schema::read_kind(file);
+        if (kind == "distances" || kind == "paths") return complaints;
+        if (kind == "index") {
+            check_index(file, info.status, complaints);
+        } else {
+            const hdf5::Handle items = hdf5::open_group(file, "items");
+            for (const std::string& name : hdf5::link_names(items))
+                check_item(items, name, info.status, complaints);
+        }
         schema::read_failures(file);
     } catch (const FileError& error) {
         complaints.emplace_back(error.what());
