@@ -78,6 +78,10 @@ int run(int argc, char** argv) {
     add_flow(app, common, action);
     add_sweep(app, common, action);
     add_layout(app, common, action);
+    add_spectrum(app, common, action);
+    add_teichmuller(app, common, action);
+    add_index(app, common, action);
+    add_path(app, common, action);
     add_verify(app, common, action);
     add_export(app, common, action);
     try {

@@ -17,7 +17,11 @@ void add_info(CLI::App& app, CommonOptions& common, Action& action);
 void add_generate(CLI::App& app, CommonOptions& common, Action& action);
 void add_flow(CLI::App& app, CommonOptions& common, Action& action);
 void add_layout(CLI::App& app, CommonOptions& common, Action& action);
+void add_spectrum(CLI::App& app, CommonOptions& common, Action& action);
+void add_teichmuller(CLI::App& app, CommonOptions& common, Action& action);
 void add_sweep(CLI::App& app, CommonOptions& common, Action& action);
+void add_index(CLI::App& app, CommonOptions& common, Action& action);
+void add_path(CLI::App& app, CommonOptions& common, Action& action);
 void add_verify(CLI::App& app, CommonOptions& common, Action& action);
 void add_export(CLI::App& app, CommonOptions& common, Action& action);
 

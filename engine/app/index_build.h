@@ -1,0 +1,77 @@
+// Describing many files for an index: which are new, in parallel, durable block by block.
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "engine/app/console.h"
+#include "engine/app/index_config.h"
+#include "io/store/index_store.h"
+
+namespace ricci::app {
+
+/// A file of the index to be.
+struct IndexInput {
+    std::string file;
+    std::vector<IndexSource> kept;  // entries of an older index that stay as they are, unread; empty: read it
+};
+
+struct BuildOptions {
+    int threads = 1;
+    std::int64_t max_memory = 0;
+    bool quiet = false;
+};
+
+/// What became of one shape, or of a file that gave none.
+struct BuiltShape {
+    std::string file;
+    std::int32_t component = 0, components = 1;
+    bool reused = false;    // known before
+    FailureRecord failure;  // status "": described
+};
+
+/// One build under way.
+class IndexBuild {
+  public:
+    IndexBuild(const IndexConfig& config, std::vector<IndexInput> inputs, IndexStore& store);
+
+    /// Reads and describes what is not known. Returns early on a signal (caught_signal()); what is finished
+    /// is durable then. Throws FileError when the store cannot be written.
+    void run(const BuildOptions& options);
+
+    /// After run(): entries and failures for IndexStore::assemble(), in the order of the inputs.
+    [[nodiscard]] std::vector<IndexSource> sources() const;
+    [[nodiscard]] std::vector<FailureRecord> load_failures() const;
+    /// Shapes of the files that were read, in their order.
+    [[nodiscard]] std::vector<BuiltShape> shapes() const;
+
+  private:
+    /// What is known of one input that is read.
+    struct Reading {
+        std::size_t input = 0;
+        std::uintmax_t size = 0;
+        std::uint64_t hash = 0;
+        bool reused = false;
+        std::string load_error;
+        std::vector<ShapeRecord> shapes;  // described, until handed over
+    };
+
+    bool read(Reading& reading);
+    bool describe(Reading& reading, std::string bytes);
+    [[nodiscard]] bool claim(std::uint64_t hash, std::int32_t component);
+    void hand_over(const std::vector<Reading*>& finished);
+
+    IndexConfig config_;
+    ShapeOptions options_;
+    std::vector<Index> resolutions_;
+    std::vector<IndexInput> inputs_;
+    IndexStore* store_;
+    std::vector<Reading> readings_;  // in the order of the inputs
+    std::mutex mutex_;
+    std::set<std::pair<std::uint64_t, std::int32_t>> claimed_;
+};
+
+}  // namespace ricci::app
