@@ -17,7 +17,7 @@ class DirichletDomain {
   public:
     /// `letters` generate the group of a surface of this genus. Throws std::runtime_error where the area is
     /// not met.
-    DirichletDomain(std::vector<Isometry<double>> letters, Index genus) {
+    DirichletDomain(const std::vector<Isometry<double>>& letters, Index genus) {
         const double area = 4 * std::numbers::pi * (genus - 1);
         std::vector<Isometry<double>> elements = with_products(letters);
         for (int round = 0; round < 8; ++round) {

@@ -7,7 +7,6 @@
 namespace ricci {
 namespace {
 
-using testing::at;
 using testing::generated;
 
 /// All geodesics up to a length: curves, and three ways to their length that do not know of the spectrum:

@@ -150,8 +150,8 @@ std::vector<double> simple_lengths(double a, double b, double boundary, double m
         stack.push_back({t.x, t.z, t.x * t.z - t.y});
         stack.push_back({t.y, t.z, t.y * t.z - t.x});
     }
-    std::vector<double> lengths;
-    for (const double t : traces) lengths.push_back(2 * std::acosh(t / 2));
+    std::vector<double> lengths = traces;
+    for (double& l : lengths) l = 2 * std::acosh(l / 2);
     std::sort(lengths.begin(), lengths.end());
     return lengths;
 }

@@ -7,7 +7,6 @@
 namespace ricci {
 namespace {
 
-using testing::at;
 using testing::generated;
 
 SurfaceSpectrum spectrum_of(const SurfaceMesh& mesh, double max_length, bool draw = false) {

@@ -1,14 +1,11 @@
 // Every lift of every vertex within a distance, once.
 #include "engine/shape_space/unfolding.h"
 
-#include <queue>
-
 #include "tests/engine/shape_space/spectrum_checks.h"
 
 namespace ricci {
 namespace {
 
-using testing::at;
 using testing::displacement_cosh;
 using testing::generated;
 using testing::IsometrySet;
@@ -43,17 +40,17 @@ std::vector<testing::NamedMesh> surfaces() {
 
 TEST(Unfolding, SeesWhatWalkingReaches) {
     for (const testing::NamedMesh& item : surfaces())
-        for (const double spacing : {0.6, 0.9, 2.0}) {
+        for (const double spacing : {0.15, 0.6, 0.9, 2.0}) {  // short edges show where the view ends
             SCOPED_TRACE(item.name + ", spacing " + std::to_string(spacing));
             const CoarseSurface s = testing::thinned(item.mesh, spacing);
             for (Index v = 0; v < std::min<Index>(s.connectivity.vertex_count, 6); ++v) {
                 // Between two distances that no lift has, by the odds.
-                constexpr double kDistance = 3.4567;
-                const IsometrySet walked = lifts_by_walking(s, v, kDistance);
+                const double distance = spacing < 0.5 ? 2.3456 : 3.4567;
+                const IsometrySet walked = lifts_by_walking(s, v, distance);
                 IsometrySet seen;
                 Index calls = 0;
                 Unfolding unfolding(s);
-                ASSERT_TRUE(unfolding.visit(v, kDistance, kNoBudget, [&](Index w, const Isometry<double>& x) {
+                ASSERT_TRUE(unfolding.visit(v, distance, kNoBudget, [&](Index w, const Isometry<double>& x) {
                     seen.insert(x, w);
                     ++calls;
                     ASSERT_NEAR(squared(x.a) - squared(x.b), 1.0, 1e-10);
@@ -66,7 +63,7 @@ TEST(Unfolding, SeesWhatWalkingReaches) {
                 const auto most =
                     static_cast<Index>(seen.elements().size()) * (item.mesh.intrinsic() ? 20 : 11) / 10 + 2;
                 EXPECT_LE(calls, most);
-                EXPECT_GT(walked.elements().size(), 10U);
+                EXPECT_GE(walked.elements().size(), 8U);
                 EXPECT_GT(unfolding.crossed(), 0);
             }
         }
