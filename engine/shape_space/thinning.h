@@ -19,8 +19,7 @@ class Thinning {
     bool remove(Index vertex);
     /// Puts a vertex in the middle of the edge of h, and restores Delaunay.
     void split(Index h);
-    /// Every point of the face has a corner within this distance: its circumradius where the centre lies
-    /// inside, else half of the longest side.
+    /// Every point of the face has a corner within this distance, and no less will do.
     [[nodiscard]] double covering_radius(Index face) const;
     /// Splits edges until covering radii are not larger, but for faces too narrow to put a vertex in.
     void limit_radius(double largest);
