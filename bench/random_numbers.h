@@ -5,22 +5,17 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <random>
 
 #include "kernels/surface_mesh.h"
+#include "tests/support/random.h"
 
 namespace ricci::bench {
 
-/// Numbers from the standard Mersenne twister, whose output the language fixes.
-class RandomNumbers {
+/// The tests' generator, with what shapes are drawn from.
+class RandomNumbers : public testing::Random {
   public:
-    explicit RandomNumbers(std::uint64_t seed) : engine_(seed) {}
+    using Random::Random;
 
-    double uniform(double low, double high) {
-        return low + (high - low) * (static_cast<double>(engine_() >> 11U) * 0x1p-53);
-    }
-    /// In [0, bound).
-    std::size_t below(std::size_t bound) { return engine_() % bound; }
     /// Standard normal (Box, Muller 1958).
     double normal() {
         const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform(0.0, 1.0)));
@@ -32,9 +27,6 @@ class RandomNumbers {
         const double radius = std::sqrt(1.0 - z * z);
         return {radius * std::cos(angle), radius * std::sin(angle), z};
     }
-
-  private:
-    std::mt19937_64 engine_;
 };
 
 inline Point plus(const Point& a, const Point& b, double factor = 1.0) {

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <chrono>
-
 #include "engine/app/app.h"
 #include "engine/app/commands.h"
 #include "engine/app/records.h"
@@ -55,22 +53,19 @@ int spectrum(const SpectrumArguments& arguments, const CommonOptions& common) {
     options.draw = !arguments.curves.empty() || !arguments.svg.empty() || !arguments.output.empty();
     options.drawn = arguments.drawn;
     return run.each([&](const ShapeItem& item) {
-        const auto start = std::chrono::steady_clock::now();
         options.flow = item.flow;
-        const SurfaceSpectrum s = make_surface_spectrum(item.mesh, options);
-        const double seconds =
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        ShapeOutcome outcome;
+        const SurfaceSpectrum s =
+            timed(outcome.seconds, [&] { return make_surface_spectrum(item.mesh, options); });
         if (s.status == Status::converged) write_curves(arguments, item.suffix, item.mesh, s);
-        if (common.json) {
-            nlohmann::json object = spectrum_json(s);
-            object["file"] = item.file;
-            object["item"] = item.name;
-            object["seconds"] = seconds;
-            print_json(object);
-        } else {
+        if (common.json)
+            outcome.json = spectrum_json(s);
+        else
             print_text(item.name, s);
-        }
-        return ShapeOutcome{s.status, s.message, make_spectrum_group(item.name, s)};
+        outcome.status = s.status;
+        outcome.message = s.message;
+        outcome.group = make_spectrum_group(item.name, s);
+        return outcome;
     });
 }
 

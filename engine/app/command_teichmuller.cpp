@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <chrono>
-
 #include "engine/app/app.h"
 #include "engine/app/commands.h"
 #include "engine/app/coordinates_record.h"
@@ -74,27 +72,24 @@ int teichmuller(const TeichmullerArguments& a, const CommonOptions& common) {
     if (!a.loops.empty()) loops = read_curves(a.loops);
     ShapeRun run(a.solve, a.files, a.output, common);
     return run.each([&](const ShapeItem& item) {
-        const auto start = std::chrono::steady_clock::now();
         SurfaceCoordinateOptions options;
         options.flow = item.flow;
         options.words = a.words;
         options.draw = !a.curves.empty() || !a.svg.empty();
         options.marking_curves = paths_from(a.marking, marking, item.mesh.connectivity);
         options.loops = paths_from(a.loops, loops, item.mesh.connectivity);
-        const SurfaceCoordinates s = make_surface_coordinates(item.mesh, options);
-        const double seconds =
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        ShapeOutcome outcome;
+        const SurfaceCoordinates s =
+            timed(outcome.seconds, [&] { return make_surface_coordinates(item.mesh, options); });
         if (s.status == Status::converged) write_curves(a, item, s);
-        if (common.json) {
-            nlohmann::json object = coordinates_json(s);
-            object["file"] = item.file;
-            object["item"] = item.name;
-            object["seconds"] = seconds;
-            print_json(object);
-        } else {
+        if (common.json)
+            outcome.json = coordinates_json(s);
+        else
             print_text(item.name, s);
-        }
-        return ShapeOutcome{s.status, s.message, make_coordinates_group(item.name, s)};
+        outcome.status = s.status;
+        outcome.message = s.message;
+        outcome.group = make_coordinates_group(item.name, s);
+        return outcome;
     });
 }
 

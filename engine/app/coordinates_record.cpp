@@ -9,21 +9,17 @@ namespace {
 void add_curves(ResultArrays& arrays, const std::string& path, const std::vector<CoordinateCurve>& curves) {
     std::vector<std::string> names, words;
     std::vector<double> lengths;
-    std::vector<std::array<double, 3>> points;
-    std::vector<Index> first{0};
+    std::vector<std::vector<Point>> points;
     for (const CoordinateCurve& c : curves) {
         names.push_back(c.name);
         words.push_back(c.word);
         lengths.push_back(c.length);
-        points.insert(points.end(), c.curve.points.begin(), c.curve.points.end());
-        first.push_back(static_cast<Index>(points.size()));
+        points.push_back(c.curve.points);
     }
     arrays.list(path + "/name", std::move(names));
     arrays.list(path + "/length", std::move(lengths));
     arrays.list(path + "/word", std::move(words));
-    if (points.empty()) return;
-    arrays.rows(path + "/points", points);
-    arrays.list(path + "/points_first", std::move(first));
+    arrays.polylines(path + "/points", points);
 }
 
 nlohmann::json curves_json(const std::vector<CoordinateCurve>& curves) {

@@ -59,6 +59,19 @@ class ResultArrays {
         list(path + "_first", std::move(first));
     }
 
+    /// Polylines, one after another: <path>, (n,3), and <path>_first. Nothing where there are no points.
+    void polylines(const std::string& path, const std::vector<std::vector<std::array<double, 3>>>& curves) {
+        std::vector<std::array<double, 3>> points;
+        std::vector<Index> first{0};
+        for (const auto& curve : curves) {
+            points.insert(points.end(), curve.begin(), curve.end());
+            first.push_back(static_cast<Index>(points.size()));
+        }
+        if (points.empty()) return;
+        rows(path, points);
+        list(path + "_first", std::move(first));
+    }
+
   private:
     ResultGroup* group_;
 };

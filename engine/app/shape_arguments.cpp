@@ -66,6 +66,12 @@ bool ShapeRun::solve_item(const LoadedMesh& loaded, std::size_t component, const
         outcome.message = e.what();
         fail(file, name, std::string(name_of(outcome.status)), outcome.message);
     }
+    if (common_.json && !outcome.json.is_null()) {
+        outcome.json["file"] = file;
+        outcome.json["item"] = name;
+        outcome.json["seconds"] = outcome.seconds;
+        print_json(outcome.json);
+    }
     const bool good = outcome.status == Status::converged;
     if (!good && outcome.status != Status::invalid_input)
         spdlog::error("{}: {}: {}", name, name_of(outcome.status), outcome.message);

@@ -1,6 +1,7 @@
 // What `ricci spectrum` and `ricci teichmuller` share: meshes in, one result per component out.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <map>
 #include <memory>
@@ -27,7 +28,18 @@ struct ShapeOutcome {
     Status status = Status::converged;
     std::string message;
     ResultGroup group;
+    nlohmann::json json;   // printed where asked for, with file, item and seconds
+    double seconds = 0.0;  // of the solve alone
 };
+
+/// make(), and how long it took.
+template <class Make>
+auto timed(double& seconds, Make&& make) {
+    const auto start = std::chrono::steady_clock::now();
+    auto made = make();
+    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return made;
+}
 
 /// Goes through files and components. Failures are logged, printed as JSON objects where asked for, and
 /// stored.

@@ -17,17 +17,16 @@ ResultGroup make_spectrum_group(const std::string& item, const SurfaceSpectrum& 
     group.attributes.push_back({"word_error", s.word_error});
     group.attributes.push_back({"unit", s.unit});
     ResultArrays arrays(group);
-    std::vector<Index> of, boundary, faces, first{0};
+    std::vector<Index> of, boundary;
     for (const std::size_t k : s.geodesic) of.push_back(static_cast<Index>(k));
     std::vector<double> lengths;
     std::vector<std::string> words;
-    std::vector<std::array<double, 3>> points;
+    std::vector<std::vector<Point>> points;
     for (const SurfaceGeodesic& g : s.geodesics) {
         lengths.push_back(g.length);
         boundary.push_back(g.boundary);
         words.push_back(g.word);
-        points.insert(points.end(), g.curve.points.begin(), g.curve.points.end());
-        first.push_back(static_cast<Index>(points.size()));
+        points.push_back(g.curve.points);
     }
     arrays.list("length", s.lengths);
     arrays.list("power", s.power);
@@ -35,9 +34,7 @@ ResultGroup make_spectrum_group(const std::string& item, const SurfaceSpectrum& 
     arrays.list("geodesics/length", std::move(lengths));
     arrays.list("geodesics/boundary", std::move(boundary));
     arrays.list("geodesics/word", std::move(words));
-    if (points.empty()) return group;
-    arrays.rows("geodesics/points", points);
-    arrays.list("geodesics/points_first", std::move(first));
+    arrays.polylines("geodesics/points", points);
     return group;
 }
 

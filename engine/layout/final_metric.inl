@@ -43,15 +43,7 @@ template <class Real>
 Isometry<Real> exterior_turn(const Complex<Real>& angle) {
     using std::sqrt;
     const Real norm = sqrt(squared(angle));
-    const Real c = angle.re / norm, s = angle.im / norm;
-    Complex<Real> half;  // e^(i theta / 2)
-    if (c > Real(0)) {
-        const Real r = sqrt(Real(2) * (Real(1) + c));
-        half = {(Real(1) + c) / r, s / r};
-    } else {
-        const Real r = sqrt(Real(2) * (Real(1) - c));
-        half = {s / r, (Real(1) - c) / r};
-    }
+    const Complex<Real> half = half_angle(Complex<Real>{angle.re / norm, angle.im / norm});
     // e^(i (pi - theta) / 2) = i conj(half).
     return {{half.im, half.re}, {}};
 }

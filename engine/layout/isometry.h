@@ -35,6 +35,19 @@ Real squared(const Complex<Real>& x) {
     return x.re * x.re + x.im * x.im;
 }
 
+/// e^(i theta / 2) of e^(i theta), theta in (-pi, pi].
+template <class Real>
+Complex<Real> half_angle(const Complex<Real>& unit) {
+    using std::sqrt;
+    if (unit.re > Real(0)) {
+        const Real r = sqrt(Real(2) * (Real(1) + unit.re));
+        return {(Real(1) + unit.re) / r, unit.im / r};
+    }
+    const Real r = sqrt(Real(2) * (Real(1) - unit.re));
+    if (unit.im < Real(0)) return {-unit.im / r, -(Real(1) - unit.re) / r};
+    return {unit.im / r, (Real(1) - unit.re) / r};
+}
+
 template <class Real>
 struct Isometry {
     Complex<Real> a{Real(1), Real(0)}, b{};

@@ -16,20 +16,6 @@ Minkowski foot_of(const Minkowski& n) {
     return {n[2] * n[0] / size, n[2] * n[1] / size, size};
 }
 
-/// Calls visit(w, step, exact step) for every edge from v.
-template <class Visit>
-void for_exact_neighbours(const ExactSurface& surface, Index v, Visit&& visit) {
-    const CoarseSurface& s = surface.coarse();
-    const Index first = s.outgoing[at(v)];
-    for (Index h = first;;) {
-        visit(s.connectivity.head(h), s.step[at(h)], CoarsePath{h});
-        const Index in = prev_halfedge(h);
-        h = s.connectivity.twin[at(in)];
-        if (h == kNoTwin) visit(s.connectivity.tail[at(in)], inverse(s.step[at(in)]), CoarsePath{~in});
-        if (h == kNoTwin || h == first) return;
-    }
-}
-
 }  // namespace
 
 double translation_length(const Isometry<Exact>& x) {
@@ -53,13 +39,13 @@ BasedCurve moved_to_axis(const ExactSurface& surface, const BasedCurve& curve, I
         const Minkowski foot = foot_of(normal);
         double nearest = foot[2];
         Index to = -1;
-        CoarsePath taken;
-        for_exact_neighbours(surface, here.vertex, [&](Index w, const Isometry<double>& x, CoarsePath path) {
-            const double distance = -minkowski(image_of_origin(-1, x), foot);
+        CoarseStep taken = 0;
+        for_neighbours(surface.coarse(), here.vertex, [&](CoarseStep step, Index w) {
+            const double distance = -minkowski(image_of_origin(-1, surface.coarse().along(step)), foot);
             if (distance >= nearest) return;
             nearest = distance;
             to = w;
-            taken = std::move(path);
+            taken = step;
         });
         if (to < 0) break;
         const Isometry<Exact> step = surface.along(taken);
@@ -81,18 +67,18 @@ BasedGeodesic follow_curve(const ExactSurface& surface, const BasedCurve& curve)
     out.passes.push_back({curve.vertex, axis_normal(curve.element), 0.0});
     for (std::size_t k = 0; k < out.passes.size(); ++k) {
         const GeodesicPass from = out.passes[k];
-        for_exact_neighbours(
-            surface, from.vertex, [&](Index w, const Isometry<double>& step, const CoarsePath& path) {
-                // One step from an exact line: near enough to see whether it passes and is known.
-                const Minkowski n = apply(-1, inverse(step), from.normal);
-                if (std::abs(n[2]) > std::sinh(s.radius[at(w)]) * (1 + 1e-9)) return;
-                for (const GeodesicPass& p : out.passes)
-                    if (p.vertex == w && same_normal(p.normal, n)) return;
-                const double offset = from.offset + foot_parameter(from.normal, image_of_origin(-1, step));
-                g.frames.push_back(product(g.frames[k], surface.along(path)));
-                const Minkowski exact = axis_normal(g.at_pass(g.frames.size() - 1));
-                out.passes.push_back({w, exact, offset - out.length * std::floor(offset / out.length)});
-            });
+        for_neighbours(s, from.vertex, [&](CoarseStep step, Index w) {
+            // One step from an exact line: near enough to see whether it passes and is known.
+            const Isometry<double> move = s.along(step);
+            const Minkowski n = apply(-1, inverse(move), from.normal);
+            if (std::abs(n[2]) > std::sinh(s.radius[at(w)]) * (1 + 1e-9)) return;
+            for (const GeodesicPass& p : out.passes)
+                if (p.vertex == w && same_normal(p.normal, n)) return;
+            const double offset = from.offset + foot_parameter(from.normal, image_of_origin(-1, move));
+            g.frames.push_back(product(g.frames[k], surface.along(step)));
+            const Minkowski exact = axis_normal(g.at_pass(g.frames.size() - 1));
+            out.passes.push_back({w, exact, offset - out.length * std::floor(offset / out.length)});
+        });
         if (out.passes.size() > 100000) throw std::runtime_error("a curve of the marking does not close");
     }
     return g;

@@ -31,7 +31,7 @@ std::vector<Crossing> crossing_points(const ClosedGeodesic& x, const ClosedGeode
             const GeodesicPass &p = x.passes[i], &q = y.passes[j];
             if (p.vertex != q.vertex) continue;
             if (!lines_cross(p.normal, q.normal)) continue;
-            const Minkowski meet = meeting_point(p.normal, q.normal);
+            const Minkowski meet = line_crossing(-1, p.normal, q.normal);
             if (meet[2] > std::cosh(s.radius[at(p.vertex)]) * (1 + 1e-7)) continue;
             const Crossing c{p.offset + foot_parameter(p.normal, meet),
                              q.offset + foot_parameter(q.normal, meet)};
@@ -49,18 +49,6 @@ std::vector<Crossing> crossing_points(const ClosedGeodesic& x, const ClosedGeode
 
 }  // namespace
 
-double translation_length(const Isometry<double>& x) {
-    const double b = std::sqrt(squared(x.b)), im = std::abs(x.a.im);
-    const double square = (b - im) * (b + im);
-    return square > 0 ? 2 * std::asinh(std::sqrt(square)) : 0.0;
-}
-
-Minkowski axis_normal(const Isometry<double>& x) {
-    const double b = std::sqrt(squared(x.b)), im = std::abs(x.a.im);
-    const double sine = std::sqrt((b - im) * (b + im)) * (x.a.re < 0 ? -1 : 1);
-    return {-x.b.im / sine, x.b.re / sine, x.a.im / sine};
-}
-
 double foot_parameter(const Minkowski& n, const Minkowski& point) {
     const double size = std::sqrt(1 + n[2] * n[2]);
     const double along = (point[0] * n[1] - point[1] * n[0]) / size;  // <point, direction at the foot>
@@ -70,14 +58,6 @@ double foot_parameter(const Minkowski& n, const Minkowski& point) {
 
 bool lines_cross(const Minkowski& n, const Minkowski& m) {
     return std::abs(minkowski(n, m)) < 1 - 1e-10;
-}
-
-Minkowski meeting_point(const Minkowski& n, const Minkowski& m) {
-    // The direction of the product of the normals.
-    Minkowski meet{n[1] * m[2] - n[2] * m[1], n[2] * m[0] - n[0] * m[2], n[1] * m[0] - n[0] * m[1]};
-    const double size = std::sqrt(-minkowski(meet, meet)) * (meet[2] < 0 ? -1 : 1);
-    for (double& v : meet) v /= size;
-    return meet;
 }
 
 bool same_normal(const Minkowski& x, const Minkowski& y) {
@@ -109,44 +89,41 @@ class Follower {
     ClosedGeodesic follow(Index vertex, const Minkowski& normal) {
         g_.passes.push_back({vertex, normal, 0.0});
         integrals_.assign(cocycles_.size(), 0);
-        for (std::size_t k = 0; k < g_.passes.size(); ++k) {
-            const Index first = s_.outgoing[at(g_.passes[k].vertex)];
-            for (Index h = first;;) {
-                arrive(k, s_.connectivity.head(h), s_.step[at(h)], h, 1);
-                const Index in = prev_halfedge(h);
-                h = s_.connectivity.twin[at(in)];
-                if (h == kNoTwin) arrive(k, s_.connectivity.tail[at(in)], inverse(s_.step[at(in)]), in, -1);
-                if (h == kNoTwin || h == first) break;
-            }
-        }
+        for (std::size_t k = 0; k < g_.passes.size(); ++k)
+            for_neighbours(s_, g_.passes[k].vertex, [&](CoarseStep step, Index w) { arrive(k, step, w); });
         for (GeodesicPass& p : g_.passes) p.offset -= g_.length * std::floor(p.offset / g_.length);
         return std::move(g_);
     }
 
   private:
-    void arrive(std::size_t from, Index to, const Isometry<double>& step, Index h, Index sign) {
+    void arrive(std::size_t from, CoarseStep step, Index to) {
         const GeodesicPass origin = g_.passes[from];
-        const Minkowski n = apply(-1, inverse(step), origin.normal);
+        const Isometry<double> move = s_.along(step);
+        const Minkowski n = apply(-1, inverse(move), origin.normal);
         if (std::abs(n[2]) > std::sinh(s_.radius[at(to)]) * (1 + 1e-9)) return;
-        const double offset = origin.offset + foot_parameter(origin.normal, image_of_origin(-1, step));
+        const double offset = origin.offset + foot_parameter(origin.normal, image_of_origin(-1, move));
         for (std::size_t k = 0; k < g_.passes.size(); ++k)
             if (g_.passes[k].vertex == to && same_normal(g_.passes[k].normal, n)) {
-                close(from, k, offset, h, sign);
+                close(from, k, offset, step);
                 return;
             }
         g_.passes.push_back({to, n, offset});
         for (std::size_t c = 0; c < cocycles_.size(); ++c)
-            integrals_.push_back(integrals_[from * cocycles_.size() + c] + sign * cocycles_[c][at(h)]);
+            integrals_.push_back(integrals_[from * cocycles_.size() + c] + value(cocycles_[c], step));
+    }
+
+    static Index value(const Cocycle& cocycle, CoarseStep step) {
+        return step >= 0 ? cocycle[at(step)] : -cocycle[at(~step)];
     }
 
     /// A pass that is known already: if it lies a whole turn away, the integrals there are periods.
-    void close(std::size_t from, std::size_t known, double offset, Index h, Index sign) {
+    void close(std::size_t from, std::size_t known, double offset, CoarseStep step) {
         if (closed_ || cocycles_.empty()) return;
         const double turns = (offset - g_.passes[known].offset) / g_.length;
         if (std::abs(std::abs(turns) - 1) > 1e-3) return;
         closed_ = true;
         for (std::size_t c = 0; c < cocycles_.size(); ++c) {
-            const Index around = integrals_[from * cocycles_.size() + c] + sign * cocycles_[c][at(h)] -
+            const Index around = integrals_[from * cocycles_.size() + c] + value(cocycles_[c], step) -
                                  integrals_[known * cocycles_.size() + c];
             g_.periods[c] = turns > 0 ? around : -around;
         }
@@ -171,7 +148,7 @@ std::optional<Meeting> nearest_meeting(const ClosedGeodesic& x, const ClosedGeod
     for (const GeodesicPass& p : x.passes)
         for (const GeodesicPass& q : y.passes) {
             if (p.vertex != q.vertex || !lines_cross(p.normal, q.normal)) continue;
-            const Minkowski point = meeting_point(p.normal, q.normal);
+            const Minkowski point = line_crossing(-1, p.normal, q.normal);
             if (!best || point[2] < best->point[2]) best = Meeting{p.vertex, p.normal, q.normal, point};
         }
     return best;

@@ -6,24 +6,26 @@
 #include <span>
 #include <vector>
 
+#include "engine/layout/line.h"
 #include "engine/shape_space/coarse_surface.h"
 
 namespace ricci {
 
-/// Vector of Minkowski space, (x, y, t) with product xx' + yy' - tt'.
-using Minkowski = std::array<double, 3>;
+/// Vector of Minkowski space, (x, y, t) with product xx' + yy' - tt': a point, or the normal of a line
+/// (line.h).
+using Minkowski = LineNormal;
 
 inline double minkowski(const Minkowski& x, const Minkowski& y) {
-    return x[0] * y[0] + x[1] * y[1] - x[2] * y[2];
+    return line_side(-1, x, y);
 }
 
-/// Translation length of a hyperbolic element, 0 where it is none: sinh^2(L/2) = |b|^2 - (Im a)^2, which is
-/// tr^2/4 - 1 without its cancellation.
-double translation_length(const Isometry<double>& element);
-
-/// The axis of a hyperbolic element as the unit normal n: <n, x> = 0 on it, > 0 on its left. |n_t| is the
-/// sinh of its distance from the origin.
-Minkowski axis_normal(const Isometry<double>& element);
+/// translation_length and translation_axis (line.h) of a hyperbolic element.
+inline double translation_length(const Isometry<double>& element) {
+    return translation_length(-1, element);
+}
+inline Minkowski axis_normal(const Isometry<double>& element) {
+    return translation_axis(-1, element).value();
+}
 
 /// One lift of a closed geodesic within the radius of a vertex.
 struct GeodesicPass {
@@ -60,9 +62,6 @@ bool same_normal(const Minkowski& x, const Minkowski& y);
 
 /// Whether the lines of two unit normals cross; rounding does not make a line cross itself.
 bool lines_cross(const Minkowski& x, const Minkowski& y);
-
-/// Where the lines of two unit normals meet, on the hyperboloid; they must.
-Minkowski meeting_point(const Minkowski& x, const Minkowski& y);
 
 /// Where two closed geodesics cross: the crossing that is nearest to a vertex.
 struct Meeting {

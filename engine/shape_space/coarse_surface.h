@@ -29,24 +29,31 @@ struct CoarseSurface {
     Index genus = 0, boundaries = 0;
     double angle_error = 0.0;  // largest miss of an angle sum, radians: rounding, and what the flow left
 
+    /// From the frame where a step ends to that where it starts.
+    [[nodiscard]] Isometry<double> along(Index step_code) const {
+        return step_code >= 0 ? step[static_cast<std::size_t>(step_code)]
+                              : inverse(step[static_cast<std::size_t>(~step_code)]);
+    }
     /// The next halfedge counterclockwise about the tail, or kNoTwin.
     [[nodiscard]] Index turned(Index h) const {
         return connectivity.twin[static_cast<std::size_t>(prev_halfedge(h))];
     }
 };
 
-/// Calls visit(w, step) for every edge from v to a vertex w, step from the frame of v to that of w; for the
-/// edge of the boundary that arrives at v too.
+/// A step along an edge: the halfedge in its direction, or ~h against it (only the boundary's need that).
+using CoarseStep = Index;
+using CoarsePath = std::vector<CoarseStep>;
+
+/// Calls visit(step, w) for every edge from v to a vertex w; for the edge of the boundary that arrives at v
+/// too.
 template <class Visit>
 void for_neighbours(const CoarseSurface& s, Index v, Visit&& visit) {
     const Index first = s.outgoing[static_cast<std::size_t>(v)];
     for (Index h = first;;) {
-        visit(s.connectivity.head(h), s.step[static_cast<std::size_t>(h)]);
+        visit(h, s.connectivity.head(h));
         const Index in = prev_halfedge(h);
         h = s.connectivity.twin[static_cast<std::size_t>(in)];
-        if (h == kNoTwin)
-            visit(s.connectivity.tail[static_cast<std::size_t>(in)],
-                  inverse(s.step[static_cast<std::size_t>(in)]));
+        if (h == kNoTwin) visit(~in, s.connectivity.tail[static_cast<std::size_t>(in)]);
         if (h == kNoTwin || h == first) return;
     }
 }

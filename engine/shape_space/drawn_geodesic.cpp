@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "engine/shape_space/based_curve.h"
+#include "engine/shape_space/length_spectrum.h"
 
 namespace ricci {
 namespace {
@@ -26,10 +27,10 @@ GeodesicPass pass_at_vertex(const CoarseSurface& s, const ClosedGeodesic& g) {
         const GeodesicPass p = front.front();
         front.pop();
         if (s.final_face[at(p.vertex)] >= 0) return p;
-        for_neighbours(s, p.vertex, [&](Index w, const Isometry<double>& step) {
+        for_neighbours(s, p.vertex, [&](CoarseStep step, Index w) {
             if (seen[at(w)]) return;
             seen[at(w)] = 1;
-            front.push({w, apply(-1, inverse(step), p.normal), 0.0});
+            front.push({w, apply(-1, inverse(s.along(step)), p.normal), 0.0});
         });
     }
     throw std::runtime_error("no vertex of the surface is left to start a geodesic at");
@@ -52,6 +53,12 @@ Word canonical_word(const SurfaceStructure& structure, std::span<const Step> pat
     return in_canonical_generators(structure.canonical, structure.basis->word_of_path(path), true);
 }
 
+std::string canonical_text(const SurfaceStructure& structure, std::span<const Index> word) {
+    std::vector<std::string> names;
+    for (const GroupGenerator& g : structure.group.generators) names.push_back(g.name);
+    return to_text(word, names);
+}
+
 double word_length(const SurfaceStructure& structure, std::span<const Index> word) {
     Isometry<double> element;
     for (const Index letter : word) {
@@ -72,13 +79,14 @@ double loop_length(const SurfaceStructure& structure, std::span<const Step> path
 
 SurfaceStructure make_sharp_structure(const SurfaceMesh& mesh, const FlowOptions& flow, int max_digits) {
     StructureOptions options;
-    options.flow = flow;
     options.max_digits = max_digits;
-    options.flow.tolerance = std::min(flow.tolerance, 1e-12);
-    SurfaceStructure s = make_surface_structure(mesh, options);
-    if (s.flow.outcome.status == Status::converged || options.flow.tolerance == flow.tolerance) return s;
-    options.flow.tolerance = flow.tolerance;
-    return make_surface_structure(mesh, options);
+    SurfaceStructure s;
+    solve_sharply(flow, [&](const FlowOptions& sharp) {
+        options.flow = sharp;
+        s = make_surface_structure(mesh, options);
+        return s.flow.outcome.status;
+    });
+    return s;
 }
 
 }  // namespace ricci

@@ -1,6 +1,8 @@
 // Closed geodesics of a coarse surface on the input surface, and their words.
 #pragma once
 
+#include <string>
+
 #include "engine/shape_space/closed_geodesic.h"
 #include "engine/shape_space/surface_curve.h"
 #include "engine/structure/surface_structure.h"
@@ -15,6 +17,9 @@ SurfaceCurve draw_geodesic(const SurfaceStructure& structure, const Connectivity
 /// The free homotopy class of a closed edge path of the input in the canonical generators (thesis, Algorithm
 /// 1): generator numbers as in SurfaceGroup::generators; cyclically reduced.
 Word canonical_word(const SurfaceStructure& structure, std::span<const Step> path);
+
+/// The same as text, in the generators' names.
+std::string canonical_text(const SurfaceStructure& structure, std::span<const Index> word);
 
 /// The length of the closed geodesic in the class of a word in the canonical generators, from the deck
 /// transformations: hyperbolic surfaces, and flat ones (of area 1). 0 where there is none.

@@ -15,16 +15,6 @@ std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
 }
 
-/// The square root of a unit complex number, with a positive real part.
-Complex<Exact> half_turn(const Complex<Exact>& x) {
-    if (x.re > Exact(0)) {
-        const Exact r = sqrt(Exact(2) * (Exact(1) + x.re));
-        return {(Exact(1) + x.re) / r, x.im / r};
-    }
-    const Exact r = sqrt(Exact(2) * (Exact(1) - x.re));
-    return {x.im / r, (Exact(1) - x.re) / r};
-}
-
 class Polisher {
   public:
     explicit Polisher(const CoarseSurface& s) : s_(s), boundary_(boundary_vertices(s.connectivity)) {
@@ -120,7 +110,7 @@ class Polisher {
             turn = {turn.re / norm, turn.im / norm};
             for (Index h = first; h != kNoTwin;) {
                 half[at(h)] = turn;
-                turn = turn * half_turn(angle_[at(h)]);
+                turn = turn * half_angle(angle_[at(h)]);
                 h = s_.turned(h);
                 if (h == first) break;
             }
@@ -152,7 +142,7 @@ ExactSurface::ExactSurface(const CoarseSurface& surface)
 
 Isometry<Exact> ExactSurface::along(const CoarsePath& path) const {
     Isometry<Exact> product;
-    for (const Index h : path) product = compose(-1, product, h >= 0 ? step(h) : inverse(step(~h)));
+    for (const CoarseStep step : path) product = compose(-1, product, along(step));
     return product;
 }
 
@@ -171,24 +161,17 @@ CoarsePath path_towards(const CoarseSurface& s, Index from, const Isometry<doubl
         Index best = 0, to = here;
         bool found = false;
         Isometry<double> taken;
-        const auto look = [&](Index h, Index w, const Isometry<double>& step) {
-            const std::array<double, 3> p = image_of_origin(-1, step);
+        for_neighbours(s, here, [&](CoarseStep step, Index w) {
+            const Isometry<double> move = s.along(step);
+            const std::array<double, 3> p = image_of_origin(-1, move);
             const double distance = p[2] * goal[2] - p[0] * goal[0] - p[1] * goal[1];
             if (distance >= nearest) return;
             nearest = distance;
             found = true;
-            best = h;
+            best = step;
             to = w;
-            taken = step;
-        };
-        const Index first = s.outgoing[at(here)];
-        for (Index h = first;;) {
-            look(h, s.connectivity.head(h), s.step[at(h)]);
-            const Index in = prev_halfedge(h);
-            h = s.connectivity.twin[at(in)];
-            if (h == kNoTwin) look(~in, s.connectivity.tail[at(in)], inverse(s.step[at(in)]));
-            if (h == kNoTwin || h == first) break;
-        }
+            taken = move;
+        });
         if (!found) throw std::runtime_error("no edge leads on towards a lift");
         path.push_back(best);
         rest = compose(-1, inverse(taken), rest);

@@ -8,9 +8,6 @@ namespace ricci {
 
 using Exact = Extended<50>;
 
-/// A step along an edge: the halfedge in its direction, or ~h against it.
-using CoarsePath = std::vector<Index>;
-
 /// Products along long paths lose e^(2R) of rounding where they come to lie R away. So one scale per vertex
 /// is solved for until all angle sums are right to fifty digits: lengths change by what they were uncertain
 /// by anyhow, and the surface is then a hyperbolic one, however long the path. (Few vertices make this cheap
@@ -21,7 +18,11 @@ class ExactSurface {
     explicit ExactSurface(const CoarseSurface& surface);
 
     [[nodiscard]] const CoarseSurface& coarse() const { return *surface_; }
-    [[nodiscard]] const Isometry<Exact>& step(Index h) const { return step_[static_cast<std::size_t>(h)]; }
+    /// From the frame where a step ends to that where it starts.
+    [[nodiscard]] Isometry<Exact> along(CoarseStep step) const {
+        return step >= 0 ? step_[static_cast<std::size_t>(step)]
+                         : inverse(step_[static_cast<std::size_t>(~step)]);
+    }
     /// The product of a path, from the frame where it ends to that where it starts.
     [[nodiscard]] Isometry<Exact> along(const CoarsePath& path) const;
     /// The exact isometry that `target` is an approximation of: one that takes the frame of some vertex to

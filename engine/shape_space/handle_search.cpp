@@ -126,7 +126,7 @@ class HandleSearch {
         for (const GeodesicPass& p : a.passes) {
             const double reach = std::cosh(s_.radius[static_cast<std::size_t>(p.vertex)]) * (1 + 1e-7);
             for (const AxisAt& x : at_vertex[p.vertex])
-                if (lines_cross(p.normal, x.normal) && meeting_point(p.normal, x.normal)[2] <= reach)
+                if (lines_cross(p.normal, x.normal) && line_crossing(-1, p.normal, x.normal)[2] <= reach)
                     axes.push_back({x.length, p.vertex, x.normal});
         }
         std::stable_sort(axes.begin(), axes.end(),

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "engine/shape_space/line_table.h"
-#include "engine/shape_space/marking.h"
 #include "engine/topology/boundary_loops.h"
 
 namespace ricci {
@@ -35,11 +34,12 @@ void keep_count(LengthSpectrum& s, std::size_t count) {
 void name_boundaries(const CoarseSurface& surface, LengthSpectrum& s) {
     s.boundary.assign(s.geodesics.size(), -1);
     LineTable lines;
-    const std::vector<Index> first = boundary_halfedges(surface);
-    for (std::size_t j = 0; j < first.size(); ++j) {
-        const double direction = surface.direction[static_cast<std::size_t>(first[j])];
-        lines.insert(surface.connectivity.tail[static_cast<std::size_t>(first[j])],
-                     {-std::sin(direction), std::cos(direction), 0.0}, static_cast<Index>(j));
+    const std::vector<std::vector<Index>> loops = boundary_loops(surface.connectivity);
+    for (std::size_t j = 0; j < loops.size(); ++j) {
+        const auto first = static_cast<std::size_t>(loops[j].front());
+        const double direction = surface.direction[first];
+        lines.insert(surface.connectivity.tail[first], {-std::sin(direction), std::cos(direction), 0.0},
+                     static_cast<Index>(j));
     }
     for (std::size_t k = 0; k < s.geodesics.size(); ++k)
         for (const GeodesicPass& p : s.geodesics[k].passes)
@@ -93,13 +93,11 @@ std::vector<Index> input_boundaries(const CoarseSurface& surface, const Connecti
 }
 
 FlowResult solve_sharply(const SurfaceMesh& mesh, const FlowOptions& options) {
-    FlowOptions sharp = options;
-    sharp.tolerance = std::min(options.tolerance, 1e-12);
-    FlowResult flow = solve_flow(mesh, sharp);
-    const Status status = flow.outcome.status;
-    if ((status == Status::stalled || status == Status::max_iterations) &&
-        sharp.tolerance < options.tolerance)
-        flow = solve_flow(mesh, options);
+    FlowResult flow;
+    solve_sharply(options, [&](const FlowOptions& sharp) {
+        flow = solve_flow(mesh, sharp);
+        return flow.outcome.status;
+    });
     return flow;
 }
 

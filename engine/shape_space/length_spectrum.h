@@ -1,6 +1,8 @@
 // The complete length spectrum of a hyperbolic surface (thesis, section 6.3.3).
 #pragma once
 
+#include <algorithm>
+
 #include "engine/shape_space/closed_geodesics.h"
 #include "engine/structure/surface_structure.h"
 
@@ -37,8 +39,18 @@ LengthSpectrum length_spectrum(const CoarseSurface& surface, const SpectrumOptio
 /// Boundary components of the input (in the order of boundary_loops) by those of the coarse surface. // r
 std::vector<Index> input_boundaries(const CoarseSurface& surface, const Connectivity& input);
 
-/// solve_flow to 1e-12, where the requested tolerance is not smaller, since errors of lengths are those of
-/// curvature summed up; where that is out of reach, to the requested one.
+/// Solves to 1e-12, where the requested tolerance is not smaller, since errors of lengths are those of
+/// curvature summed up; where that is out of reach, to the requested one. `solve(options)` returns the
+/// status.
+template <class Solve>
+void solve_sharply(const FlowOptions& options, Solve&& solve) {
+    FlowOptions sharp = options;
+    sharp.tolerance = std::min(options.tolerance, 1e-12);
+    const Status status = solve(sharp);
+    if ((status == Status::stalled || status == Status::max_iterations) &&
+        sharp.tolerance < options.tolerance)
+        solve(options);
+}
 FlowResult solve_sharply(const SurfaceMesh& mesh, const FlowOptions& options);
 
 /// The smooth hyperbolic surface of a converged flow, closed or with geodesic boundary. `refinement`,

@@ -50,44 +50,10 @@ void describe_hyperbolic(const SurfaceMesh& mesh, const ShapeOptions& options, S
     if (!converged(d, flow)) return;
     const CoarseSurface surface = coarse_surface_of(mesh, flow, options.flow.delaunay);
     d.seconds.surface = lap(last);
-    SpectrumOptions spectrum;
-    spectrum.max_length = options.max_length;
-    spectrum.count = options.count;
-    spectrum.inner_count = std::min<std::int64_t>(options.fingerprint, 4 * (3 * d.genus - 3 + d.boundaries));
-    spectrum.budget = options.budget;
-    const LengthSpectrum s = length_spectrum(surface, spectrum);
-    d.complete_up_to = options.count > 0 ? s.complete_up_to : std::min(options.max_length, s.complete_up_to);
-    for (const SpectrumLength& l : s.lengths) {
-        if (l.length > d.complete_up_to) break;
-        d.lengths.push_back(l.length);
-        d.primitive.push_back(l.power == 1);
-    }
-    const auto size = static_cast<std::size_t>(spectrum.inner_count + d.boundaries);
-    d.fingerprint = boundary_lengths(surface);
-    for (std::size_t k = 0; k < s.geodesics.size() && d.fingerprint.size() < size; ++k)
-        if (s.boundary[k] < 0) d.fingerprint.push_back(s.geodesics[k].length);
-    for (double& x : d.fingerprint) x = std::log(x);
+    const bool full = describe_spectrum(surface, options, d);
     d.seconds.spectrum = lap(last);
-    if (d.fingerprint.size() < size) {
-        d.status = Status::max_iterations;
-        d.message = "the spectrum's budget ended before the fingerprint was full";
-        return;
-    }
-    if (!options.coordinates) return;
-    try {
-        const ExactSurface exact(surface);
-        MarkingOptions marking;
-        marking.budget = options.budget;
-        const TeichmullerCoordinates c = teichmuller_coordinates(exact, make_marking(exact, marking));
-        for (const LengthCoordinate& l : c.lengths) {
-            d.coordinates.push_back(l.length);
-            d.names.push_back(l.name);
-        }
-        d.marking_gap = c.smallest_gap;
-        d.message = near_ties(c.choices);
-    } catch (const std::runtime_error& e) {
-        d.message = std::string("no coordinates: ") + e.what();
-    }
+    if (!full || !options.coordinates) return;
+    describe_coordinates(surface, options, d);
     d.seconds.coordinates = lap(last);
 }
 
@@ -144,6 +110,47 @@ void describe_sphere(const SurfaceMesh& mesh, const ShapeOptions& options, Shape
 }
 
 }  // namespace
+
+bool describe_spectrum(const CoarseSurface& surface, const ShapeOptions& options, ShapeDescriptor& d) {
+    SpectrumOptions spectrum;
+    spectrum.max_length = options.max_length;
+    spectrum.count = options.count;
+    spectrum.inner_count = std::min<std::int64_t>(options.fingerprint, 4 * (3 * d.genus - 3 + d.boundaries));
+    spectrum.budget = options.budget;
+    const LengthSpectrum s = length_spectrum(surface, spectrum);
+    d.complete_up_to = options.count > 0 ? s.complete_up_to : std::min(options.max_length, s.complete_up_to);
+    for (const SpectrumLength& l : s.lengths) {
+        if (l.length > d.complete_up_to) break;
+        d.lengths.push_back(l.length);
+        d.primitive.push_back(l.power == 1);
+    }
+    const auto size = static_cast<std::size_t>(spectrum.inner_count + d.boundaries);
+    d.fingerprint = boundary_lengths(surface);
+    for (std::size_t k = 0; k < s.geodesics.size() && d.fingerprint.size() < size; ++k)
+        if (s.boundary[k] < 0) d.fingerprint.push_back(s.geodesics[k].length);
+    for (double& x : d.fingerprint) x = std::log(x);
+    if (d.fingerprint.size() == size) return true;
+    d.status = Status::max_iterations;
+    d.message = "the spectrum's budget ended before the fingerprint was full";
+    return false;
+}
+
+void describe_coordinates(const CoarseSurface& surface, const ShapeOptions& options, ShapeDescriptor& d) {
+    try {
+        const ExactSurface exact(surface);
+        MarkingOptions marking;
+        marking.budget = options.budget;
+        const TeichmullerCoordinates c = teichmuller_coordinates(exact, make_marking(exact, marking));
+        for (const LengthCoordinate& l : c.lengths) {
+            d.coordinates.push_back(l.length);
+            d.names.push_back(l.name);
+        }
+        d.marking_gap = c.smallest_gap;
+        d.message = near_ties(c.choices);
+    } catch (const std::runtime_error& e) {
+        d.message = std::string("no coordinates: ") + e.what();
+    }
+}
 
 ShapeDescriptor describe_shape(const SurfaceMesh& mesh, const ShapeOptions& options) {
     const Topology topology = topology_of(mesh.connectivity);

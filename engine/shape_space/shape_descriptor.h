@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/flow/flow.h"
+#include "engine/shape_space/coarse_surface.h"
 
 namespace ricci {
 
@@ -49,5 +50,11 @@ struct ShapeDescriptor {
 /// Describes one connected surface. Numerical outcomes are a status; throws std::invalid_argument for options
 /// that do not fit.
 ShapeDescriptor describe_shape(const SurfaceMesh& mesh, const ShapeOptions& options);
+
+/// Its parts for a hyperbolic surface that is there already; `d` has genus and boundaries. Lengths and
+/// fingerprint; false, with status and message, where the budget ends before the fingerprint is full.
+bool describe_spectrum(const CoarseSurface& surface, const ShapeOptions& options, ShapeDescriptor& d);
+/// Coordinates by the marking of the rule, or a message why not.
+void describe_coordinates(const CoarseSurface& surface, const ShapeOptions& options, ShapeDescriptor& d);
 
 }  // namespace ricci

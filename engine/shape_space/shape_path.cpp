@@ -18,8 +18,6 @@ namespace {
 
 /// Relative differences of lengths above this are worth a note.
 constexpr double kSpread = 1e-8;
-/// A gap of a marking below this, too.
-constexpr double kNearTie = 0.01;
 
 bool same_triangles(const Connectivity& x, const Connectivity& y) {
     return x.vertex_count == y.vertex_count && x.tail == y.tail && x.twin == y.twin;
@@ -91,29 +89,51 @@ const ShapePath::KnownMarking* ShapePath::known(const Connectivity& connectivity
 void ShapePath::describe_hyperbolic(const SurfaceMesh& mesh, PathFrame& frame) {
     const SurfaceStructure s = make_sharp_structure(mesh, options_.flow, 16);
     if (!converged(frame, s.flow)) return;
-    if (const KnownMarking* m = known(mesh.connectivity)) {
+    const CoarseSurface coarse =
+        coarse_surface_of(mesh, s.flow, options_.flow.delaunay, &*s.refinement, &*s.metric);
+    ShapeDescriptor d;
+    d.genus = frame.genus;
+    d.boundaries = frame.boundaries;
+    const bool full = describe_spectrum(coarse, options_, d);
+    frame.fingerprint = d.fingerprint;
+    if (!full) {
+        frame.status = d.status;
+        frame.message = d.message;
+    } else if (const KnownMarking* m = known(mesh.connectivity)) {
+        describe_coordinates(coarse, options_, d);  // for the gap that a marking of its own would have
+        frame.message = d.message;
+        frame.marking_gap = d.marking_gap;
         frame.marking = MarkingSource::carried;
         frame.marking_number = m->number;
         frame.names = m->curves.names;
         frame.coordinates = carried_lengths(m->curves, s, mesh.connectivity, frame.marking_spread);
         if (frame.marking_spread > kSpread) note(frame, "rounding grows along the carried curves");
+    } else {
+        describe_own_marking(mesh, s, coarse, frame);
+    }
+}
+
+void ShapePath::describe_own_marking(const SurfaceMesh& mesh, const SurfaceStructure& s,
+                                     const CoarseSurface& coarse, PathFrame& frame) {
+    const ExactSurface surface(coarse);
+    MarkingOptions marking;
+    marking.budget = options_.budget;
+    TeichmullerCoordinates c;
+    try {
+        c = teichmuller_coordinates(surface, make_marking(surface, marking));
+    } catch (const std::runtime_error& e) {
+        frame.status = Status::max_iterations;  // as a rule the budget ended; the message says so
+        frame.message = std::string("no coordinates: ") + e.what();
         return;
     }
     frame.marking = MarkingSource::own;
     frame.marking_number = next_number_++;
-    const CoarseSurface coarse =
-        coarse_surface_of(mesh, s.flow, options_.flow.delaunay, &*s.refinement, &*s.metric);
-    const ExactSurface surface(coarse);
-    MarkingOptions marking;
-    marking.budget = options_.budget;
-    const TeichmullerCoordinates c = teichmuller_coordinates(surface, make_marking(surface, marking));
     for (const LengthCoordinate& l : c.lengths) {
         frame.coordinates.push_back(l.length);
         frame.names.push_back(l.name);
     }
     frame.marking_gap = c.smallest_gap;
-    if (frame.marking_gap < kNearTie)
-        note(frame, "a near-tie in the marking, which noise or another triangulation may turn");
+    frame.message = near_ties(c.choices);
     try {
         DrawnMarking drawn = draw_marking(s, mesh.connectivity, surface, c);
         double spread = 0.0;
@@ -154,6 +174,9 @@ void ShapePath::describe_torus(const SurfaceMesh& mesh, PathFrame& frame) {
             {0, mesh.connectivity, {}, {lattice_path(*s.basis, a), lattice_path(*s.basis, b)}});
     }
     frame.marking_number = 0;
+    frame.marking_gap = 1.0;
+    const std::complex<double> reduced = torus_lattice(s.group).modulus;
+    frame.fingerprint = {reduced.real(), reduced.imag()};
     if (!first_modulus_) first_modulus_ = modulus;
     modulus_ = modulus;
     frame.names = {"modulus_re", "modulus_im"};
@@ -169,25 +192,15 @@ void ShapePath::describe(const SurfaceMesh& mesh, PathFrame& frame) {
                                     std::to_string(frame.boundaries) +
                                     " boundaries, unlike the frames before (" + std::to_string(type_->first) +
                                     ", " + std::to_string(type_->second) + ")");
-    const bool marked = topology.euler_characteristic < 0 || topology.genus == 1;
+    if (topology.euler_characteristic < 0) return describe_hyperbolic(mesh, frame);
+    if (topology.genus == 1) return describe_torus(mesh, frame);
     ShapeDescriptor d = describe_shape(mesh, options_);
     frame.status = d.status;
     frame.message = std::move(d.message);
     frame.fingerprint = std::move(d.fingerprint);
     frame.marking_gap = d.marking_gap;
-    if (frame.status != Status::converged) return;
-    if (d.coordinates.empty() && !known(mesh.connectivity)) {
-        frame.status = Status::max_iterations;  // the budget ended; message says so
-        return;
-    }
-    if (!marked) {
-        frame.coordinates = std::move(d.coordinates);
-        frame.names = std::move(d.names);
-    } else if (topology.euler_characteristic < 0) {
-        describe_hyperbolic(mesh, frame);
-    } else {
-        describe_torus(mesh, frame);
-    }
+    frame.coordinates = std::move(d.coordinates);
+    frame.names = std::move(d.names);
 }
 
 void ShapePath::measure_step(PathFrame& frame) {

@@ -76,6 +76,8 @@ class ShapePath {
     };
     void describe(const SurfaceMesh& mesh, PathFrame& frame);
     void describe_hyperbolic(const SurfaceMesh& mesh, PathFrame& frame);
+    void describe_own_marking(const SurfaceMesh& mesh, const SurfaceStructure& structure,
+                              const CoarseSurface& coarse, PathFrame& frame);
     void describe_torus(const SurfaceMesh& mesh, PathFrame& frame);
     void measure_step(PathFrame& frame);
     [[nodiscard]] const KnownMarking* known(const Connectivity& connectivity) const;

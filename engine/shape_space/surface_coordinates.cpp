@@ -12,12 +12,6 @@
 namespace ricci {
 namespace {
 
-std::string text_of(const SurfaceStructure& structure, std::span<const Index> word) {
-    std::vector<std::string> names;
-    for (const GroupGenerator& g : structure.group.generators) names.push_back(g.name);
-    return to_text(word, names);
-}
-
 /// Classes and lengths of edge paths, by the deck transformations of their words.
 std::vector<CoordinateCurve> measured(const SurfaceStructure& structure,
                                       const std::vector<NamedPath>& paths) {
@@ -26,7 +20,7 @@ std::vector<CoordinateCurve> measured(const SurfaceStructure& structure,
         const Word word = canonical_word(structure, p.path);
         // The relator's element is the identity up to rounding only.
         const double length = word.empty() ? 0.0 : loop_length(structure, p.path);
-        curves.push_back({p.name, length, text_of(structure, word), {}});
+        curves.push_back({p.name, length, canonical_text(structure, word), {}});
     }
     return curves;
 }
@@ -45,7 +39,7 @@ void by_rule(const SurfaceMesh& mesh, const SurfaceCoordinateOptions& options, c
         if (options.words || options.draw) try {
                 const ClosedGeodesic g = follow_curve(exact, moved_to_axis(exact, l.curve)).geodesic;
                 curve.curve = draw_geodesic(s.structure, mesh.connectivity, surface, g);
-                curve.word = text_of(s.structure, canonical_word(s.structure, curve.curve.path));
+                curve.word = canonical_text(s.structure, canonical_word(s.structure, curve.curve.path));
                 if (!options.draw) curve.curve = {};
             } catch (const std::runtime_error& e) {
                 s.message = "the curve " + l.name + " is not drawn: " + e.what();

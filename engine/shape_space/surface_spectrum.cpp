@@ -13,12 +13,6 @@
 namespace ricci {
 namespace {
 
-std::string text_of(const SurfaceStructure& structure, std::span<const Index> word) {
-    std::vector<std::string> names;
-    for (const GroupGenerator& g : structure.group.generators) names.push_back(g.name);
-    return to_text(word, names);
-}
-
 bool wanted(const SurfaceSpectrumOptions& o, std::size_t k) {
     return o.drawn == 0 || static_cast<std::int64_t>(k) < o.drawn;
 }
@@ -29,7 +23,7 @@ void describe(const SurfaceStructure& structure, const SurfaceSpectrumOptions& o
     SurfaceGeodesic& g = s.geodesics[k];
     if (options.words) {
         const Word word = canonical_word(structure, curve.path);
-        g.word = text_of(structure, word);
+        g.word = canonical_text(structure, word);
         if (structure.kappa < 0 && structure.group.relator_error < 1e-8) {
             const double length = word_length(structure, word);
             if (g.length < 12 && word.size() < 40)
@@ -111,7 +105,7 @@ void torus(const SurfaceMesh& mesh, const SurfaceSpectrumOptions& options, Surfa
         if (it == known.end()) {
             const std::size_t k = s.geodesics.size();
             s.geodesics.push_back({l.length / static_cast<double>(l.power), -1, "", {}});
-            if (options.words) s.geodesics[k].word = text_of(s.structure, lattice_word(c));
+            if (options.words) s.geodesics[k].word = canonical_text(s.structure, lattice_word(c));
             if (options.draw && wanted(options, k))
                 s.geodesics[k].curve =
                     flat_curve(mesh, s.structure,

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/layout/final_metric.inl"
+#include "engine/shape_space/hyperbolic_triangle.h"
 #include "kernels/edge_flip.h"
 
 namespace ricci {
@@ -65,52 +65,15 @@ Index Thinning::turned(Index h) const {
 
 void Thinning::update_angles(Index face) {
     const std::size_t h = 3 * at(face);
-    if (std::max({half_chord_[h], half_chord_[h + 1], half_chord_[h + 2]}) > 0.5) {
-        update_large_angles(h);
-        return;
-    }
-    const auto raw = final_metric::angle_vectors<double>(-1, 2 * half_chord_[h], 2 * half_chord_[h + 1],
-                                                         2 * half_chord_[h + 2]);
-    if (!(raw[0].im > 0)) {  // rounded to flat
-        update_large_angles(h);
-        return;
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-        const double norm = std::sqrt(squared(raw[k]));
-        angle_[h + k] = {raw[k].re / norm, raw[k].im / norm};
-    }
+    const std::array<Complex<double>, 3> angle =
+        triangle_angles({half_chord_[h], half_chord_[h + 1], half_chord_[h + 2]});
+    std::copy(angle.begin(), angle.end(), angle_.begin() + static_cast<std::ptrdiff_t>(h));
 }
 
-/// tan^2(A/2) = sinh(s - b) sinh(s - c) / (sinh s sinh(s - a)), a, b, c the lengths, s half their sum: where
-/// chords grow like e^(l/2), differences of their products have lost thin angles.
-void Thinning::update_large_angles(std::size_t h) {
-    std::array<double, 3> rest{};  // sinh(s - l), per halfedge
-    double sum = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-        rest[k] = 2 * std::asinh(half_chord_[h + k]);
-        sum += rest[k];
-    }
-    for (double& l : rest) l = std::sinh(std::max(0.0, sum / 2 - l));
-    const double whole = std::sinh(sum / 2);
-    for (std::size_t k = 0; k < 3; ++k) {
-        // Corner k lies between halfedges k and k + 2, opposite k + 1.
-        const double square = rest[k] * rest[(k + 2) % 3], rest_square = whole * rest[(k + 1) % 3];
-        const double norm = square + rest_square;
-        angle_[h + k] = {(rest_square - square) / norm, 2 * std::sqrt(square * rest_square) / norm};
-    }
-}
-
-/// In the triangles (i, j, k) left of h and (j, i, l) right of it, from those two sides at i:
-/// sinh^2(kl/2) = sinh^2((il - ik)/2) + sinh(il) sinh(ik) sin^2(A/2).
+/// kl, in the triangles (i, j, k) left of h and (j, i, l) right of it, from the two sides at i.
 double Thinning::new_half_chord(Index h) const {
-    const Index t = c_.twin[at(h)], il = next_halfedge(t), ik = prev_halfedge(h);
-    const Complex<double> turn = angle_[at(h)] * angle_[at(il)];
-    const double sine2 =
-        turn.re < 0 ? (1 - turn.re) / 2 : turn.im * turn.im / (2 * (1 + turn.re));  // sin^2(A/2)
-    const double sl = half_chord_[at(il)], cl = half_cosine_[at(il)], sk = half_chord_[at(ik)],
-                 ck = half_cosine_[at(ik)];
-    const double difference = sl * ck - sk * cl;
-    return std::sqrt(difference * difference + 4 * sl * cl * sk * ck * sine2);
+    const Index il = next_halfedge(c_.twin[at(h)]), ik = prev_halfedge(h);
+    return third_half_chord(half_chord_[at(il)], half_chord_[at(ik)], angle_[at(h)] * angle_[at(il)]);
 }
 
 /// The determinant of the other three corners, as seen from the tail, on the hyperboloid.
@@ -292,7 +255,7 @@ void Thinning::split(Index h) {
     reference_.push_back(kNoTwin);
     const Index sides[2] = {h, c_.twin[at(h)]};
     Index far[2] = {kNoTwin, kNoTwin};  // on either side, the new half next to its head
-    const double s = half_chord_[at(h)], quarter = s / std::sqrt(2 * (1 + half_cosine_[at(h)]));
+    const double quarter = halved(half_chord_[at(h)]);
     const Index edges = c_.edge_count;
     c_.edge_count += sides[1] == kNoTwin ? 2 : 3;
     for (std::size_t k = 0; k < 2 && sides[k] != kNoTwin; ++k) {
@@ -343,28 +306,8 @@ void Thinning::split(Index h) {
 
 double Thinning::covering_radius(Index face) const {
     const std::size_t h = 3 * at(face);
-    const double p = half_chord_[h], q = half_chord_[h + 1], r = half_chord_[h + 2];
-    const double half = std::asinh(std::max({p, q, r}));
-    std::array<double, 3> angle{};
-    for (std::size_t k = 0; k < 3; ++k) angle[k] = radians(angle_[h + k]);
-    std::size_t widest = 0;
-    for (std::size_t k = 1; k < 3; ++k)
-        if (angle[k] > angle[widest]) widest = k;
-    if (2 * angle[widest] > angle[0] + angle[1] + angle[2]) {
-        // On the side opposite the wide corner, where the bisectors of the others meet it: tanh x = tanh(b/2)
-        // / cos A. The sides at the wide corner are the halfedges `widest`, to the corner a, and b, from the
-        // corner b.
-        const auto reach = [&](std::size_t corner, std::size_t side) {
-            const double s = half_chord_[h + side];
-            const double tangent = s / (std::sqrt(1 + s * s) * angle_[h + corner].re);
-            return tangent < 1 ? std::atanh(tangent) : half;
-        };
-        const std::size_t a = (widest + 1) % 3, b = (widest + 2) % 3;
-        return std::min(half, std::max(reach(a, widest), reach(b, b)));
-    }
-    // The corners lie on a circle of radius sinh R in the plane through them.
-    const double product = (p + q + r) * (p + q - r) * (q + r - p) * (r + p - q);
-    return product > 0 ? std::asinh(2 * p * q * r / std::sqrt(product)) : half;
+    return ricci::covering_radius({half_chord_[h], half_chord_[h + 1], half_chord_[h + 2]},
+                                  {angle_[h], angle_[h + 1], angle_[h + 2]});
 }
 
 /// First the boundary, so that edges beside it give way to others that end there; then what is long inside.
@@ -400,13 +343,7 @@ Index Thinning::longest_side(Index face) const {
 
 /// Half chord from the middle of h to the opposite corner.
 double Thinning::median(Index h) const {
-    const double s = half_chord_[at(h)], quarter = s / std::sqrt(2 * (1 + half_cosine_[at(h)]));
-    const Index ki = prev_halfedge(h);
-    const double sk = half_chord_[at(ki)], ck = half_cosine_[at(ki)], cq = std::sqrt(1 + quarter * quarter);
-    const Complex<double> a = angle_[at(h)];
-    const double sine2 = a.re < 0 ? (1 - a.re) / 2 : a.im * a.im / (2 * (1 + a.re));
-    const double difference = quarter * ck - sk * cq;
-    return std::sqrt(difference * difference + 4 * quarter * cq * sk * ck * sine2);
+    return third_half_chord(halved(half_chord_[at(h)]), half_chord_[at(prev_halfedge(h))], angle_[at(h)]);
 }
 
 void Thinning::make_delaunay() {

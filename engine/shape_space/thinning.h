@@ -40,7 +40,6 @@ class Thinning {
   private:
     void set_directions();
     void update_angles(Index face);
-    void update_large_angles(std::size_t first);
     void flip(Index h);
     [[nodiscard]] double new_half_chord(Index h) const;
     [[nodiscard]] bool delaunay(Index h) const;

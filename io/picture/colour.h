@@ -1,6 +1,7 @@
 // Colours of pictures.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <tuple>
@@ -29,5 +30,15 @@ struct LabColour {
 LabColour lab_of(const Colour& colour);
 /// The nearest sRGB colour, each channel cut to its range.
 Colour colour_of(const LabColour& lab);
+
+/// Colours for what has no order, which deficient eyes tell apart too (Okabe, Ito 2008), without the yellow,
+/// which is faint on white.
+inline constexpr std::array<Colour, 7> kCategoryColours = {{{0, 114, 178},
+                                                            {213, 94, 0},
+                                                            {0, 158, 115},
+                                                            {204, 121, 167},
+                                                            {86, 180, 233},
+                                                            {230, 159, 0},
+                                                            {110, 90, 70}}};
 
 }  // namespace ricci

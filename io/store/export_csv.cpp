@@ -2,22 +2,11 @@
 
 #include <iterator>
 
+#include "io/store/csv_text.h"
 #include "io/store/durable.h"
 #include "io/store/run_store.h"
 
 namespace ricci {
-namespace {
-
-// RFC 4180: quoted where it must be.
-std::string csv_field(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return quoted + '"';
-}
-
-}  // namespace
-
 void export_csv(const std::string& path, const StoredRun& run) {
     std::string text = "item,vertex,status,area_distortion,newton_iterations,residual_max,flips,seconds\n";
     for (const StoredItem& item : run.items) {

@@ -134,6 +134,17 @@ void write_texts(hid_t parent, const std::string& name, hid_t type, const Shape&
     write_attribute<std::uint64_t>(dataset, "xxh3", XXH3_64bits_digest(state.get()));
 }
 
+void write_text_list(hid_t parent, const std::string& name, const std::vector<std::string>& texts,
+                     const std::optional<Shape>& shape) {
+    std::vector<std::string> stored;
+    stored.reserve(texts.size());
+    for (const std::string& text : texts) stored.push_back(stored_text(text));
+    std::vector<const char*> pointers;
+    pointers.reserve(stored.size());
+    for (const std::string& text : stored) pointers.push_back(text.c_str());
+    write_texts(parent, name, text_type(), shape ? *shape : Shape{stored.size()}, pointers);
+}
+
 std::vector<std::string> read_texts(const Input& input, hid_t type, std::size_t members) {
     if (members == 0 || H5Tget_size(type) != members * sizeof(char*))
         throw FileError(input.name() + ": not a table of texts");

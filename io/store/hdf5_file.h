@@ -184,6 +184,9 @@ class Input {
 /// order, and back (`members` texts per value).
 void write_texts(hid_t parent, const std::string& name, hid_t type, const Shape& shape,
                  const std::vector<const char*>& texts);
+/// A list of texts, each as stored_text keeps it.
+void write_text_list(hid_t parent, const std::string& name, const std::vector<std::string>& texts,
+                     const std::optional<Shape>& shape = std::nullopt);
 std::vector<std::string> read_texts(const Input& input, hid_t type, std::size_t members);
 
 /// An array of numbers with exactly this shape, or (`std::nullopt`) any one-dimensional one.

@@ -4,33 +4,17 @@
 
 #include <cmath>
 
+#include "io/store/csv_text.h"
 #include "io/store/durable.h"
-#include "io/store/schema.h"
+#include "io/store/whole_file.h"
 
 namespace ricci {
 namespace {
 
 using hdf5::Handle;
 
-std::string quoted(const std::string& text) {
-    if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-    std::string result = "\"";
-    for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return result + "\"";
-}
-
 std::string cell(double value) {
     return std::isnan(value) ? std::string() : fmt::format("{}", value);
-}
-
-void write_texts(hid_t group, const char* name, const std::vector<std::string>& texts) {
-    std::vector<std::string> stored;
-    stored.reserve(texts.size());
-    for (const std::string& text : texts) stored.push_back(hdf5::stored_text(text));
-    std::vector<const char*> pointers;
-    pointers.reserve(stored.size());
-    for (const std::string& text : stored) pointers.push_back(text.c_str());
-    hdf5::write_texts(group, name, hdf5::text_type(), {stored.size()}, pointers);
 }
 
 void write_matrix(hid_t group, const char* name, const std::vector<double>& values, hsize_t rows) {
@@ -42,10 +26,10 @@ void write_record(hid_t parent, const std::string& name, const PathRecord& recor
     const Handle group = hdf5::create_group(parent, name);
     hdf5::write_text_attribute(group, "type", record.type);
     hdf5::seal(group);
-    write_texts(group, "name", record.names);
-    write_texts(group, "file", record.files);
-    write_texts(group, "marking", record.marking);
-    write_texts(group, "message", record.message);
+    hdf5::write_text_list(group, "name", record.names);
+    hdf5::write_text_list(group, "file", record.files);
+    hdf5::write_text_list(group, "marking", record.marking);
+    hdf5::write_text_list(group, "message", record.message);
     hdf5::write_array(group, "status", record.status);
     hdf5::write_array(group, "marking_number", record.marking_number);
     write_matrix(group, "coordinates", record.coordinates, record.files.size());
@@ -60,31 +44,22 @@ void write_record(hid_t parent, const std::string& name, const PathRecord& recor
 /// The row of frame i.
 std::string csv_row(std::size_t sequence, std::size_t i, const PathRecord& r,
                     const StatusNames& status_names) {
-    std::string row = fmt::format("{},{},{},{},{},{},{},{},{},{},{}", sequence, i, quoted(r.files[i]),
+    std::string row = fmt::format("{},{},{},{},{},{},{},{},{},{},{}", sequence, i, csv_field(r.files[i]),
                                   status_names.names.at(r.status[i]), r.marking[i], r.marking_number[i],
                                   cell(r.marking_gap[i]), cell(r.marking_spread[i]), cell(r.step[i]),
                                   cell(r.free_step[i]), cell(r.length[i]));
     for (std::size_t k = 0; k < r.names.size(); ++k) row += "," + cell(r.coordinates[i * r.names.size() + k]);
-    return row + "," + quoted(r.message[i]) + "\n";
+    return row + "," + csv_field(r.message[i]) + "\n";
 }
 
 }  // namespace
 
 void write_path_file(const std::string& path, const RunInfo& info, const std::vector<PathRecord>& records) {
-    const std::string temporary = path + ".tmp";
-    {
-        const hdf5::Session session;
-        hdf5::write_file(temporary, [&](hdf5::OutputFile& file) {
-            hdf5::write_text_attribute(file.root(), "kind", "paths");
-            schema::write_run_info(file.root(), info, schema::now());
-            const Handle group = hdf5::create_group(file.root(), "paths");
-            for (std::size_t k = 0; k < records.size(); ++k)
-                write_record(group, fmt::format("{}", k + 1), records[k]);
-            file.flush();
-            hdf5::write_attribute<std::int32_t>(file.root(), "complete", 1);
-        });
-    }
-    rename_durably(temporary, path);
+    schema::write_whole_file(path, info, "paths", [&](hid_t root) {
+        const Handle group = hdf5::create_group(root, "paths");
+        for (std::size_t k = 0; k < records.size(); ++k)
+            write_record(group, fmt::format("{}", k + 1), records[k]);
+    });
 }
 
 void write_path_csv(const std::string& path, const StatusNames& status_names,
@@ -92,7 +67,7 @@ void write_path_csv(const std::string& path, const StatusNames& status_names,
     std::string text =
         "sequence,frame,file,status,marking,marking_number,marking_gap,marking_spread,step,free_step,length";
     if (!records.empty())
-        for (const std::string& name : records.front().names) text += "," + quoted(name);
+        for (const std::string& name : records.front().names) text += "," + csv_field(name);
     text += ",message\n";
     for (std::size_t s = 0; s < records.size(); ++s)
         for (std::size_t i = 0; i < records[s].files.size(); ++i)

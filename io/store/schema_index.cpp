@@ -49,13 +49,10 @@ struct Rows {
 
     template <class Of>
     void texts(hid_t group, const char* name, Of&& of) const {
-        std::vector<std::string> stored;
-        stored.reserve(entries.size());
-        for (const IndexEntry* entry : entries) stored.push_back(hdf5::stored_text(of(*entry)));
-        std::vector<const char*> pointers;
-        pointers.reserve(stored.size());
-        for (const std::string& text : stored) pointers.push_back(text.c_str());
-        hdf5::write_texts(group, name, hdf5::text_type(), {stored.size()}, pointers);
+        std::vector<std::string> values;
+        values.reserve(entries.size());
+        for (const IndexEntry* entry : entries) values.push_back(of(*entry));
+        hdf5::write_text_list(group, name, values);
     }
 };
 

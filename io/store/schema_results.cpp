@@ -69,13 +69,7 @@ void write_values_of(hid_t group, const std::string& name, const ResultArray& ar
         [&](const auto& values) {
             using Value = typename std::decay_t<decltype(values)>::value_type;
             if constexpr (std::is_same_v<Value, std::string>) {
-                std::vector<std::string> stored;
-                stored.reserve(values.size());
-                for (const std::string& text : values) stored.push_back(hdf5::stored_text(text));
-                std::vector<const char*> pointers;
-                pointers.reserve(stored.size());
-                for (const std::string& text : stored) pointers.push_back(text.c_str());
-                hdf5::write_texts(group, name, hdf5::text_type(), shape, pointers);
+                hdf5::write_text_list(group, name, values, shape);
             } else {
                 hdf5::write_array(group, name, std::span<const Value>(values), shape);
             }

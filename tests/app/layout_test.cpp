@@ -7,24 +7,18 @@
 #include "io/mesh/mesh_file.h"
 #include "io/store/run_store.h"
 #include "tests/support/program.h"
+#include "tests/support/stored_results.h"
 
 namespace ricci {
 namespace {
 
+using ricci::testing::group_of;
 using ricci::testing::make;
 using ricci::testing::objects;
 using ricci::testing::ProgramResult;
 using ricci::testing::read_text;
 using ricci::testing::run_ricci;
 using ricci::testing::TemporaryFolder;
-
-const ResultGroup& group_of(const StoredRun& run, const std::string& kind) {
-    const auto& results = run.items.at(0).results;
-    const auto found =
-        std::find_if(results.begin(), results.end(), [&](const ResultGroup& g) { return g.kind == kind; });
-    if (found == results.end()) throw std::runtime_error("no group " + kind);
-    return *found;
-}
 
 TEST(LayoutCommand, HyperbolicSurfaceHasGeneratorsInSl2R) {
     const TemporaryFolder folder;

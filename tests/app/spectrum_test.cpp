@@ -7,16 +7,19 @@
 #include "io/mesh/mesh_file.h"
 #include "io/store/run_store.h"
 #include "tests/support/program.h"
+#include "tests/support/stored_results.h"
 
 namespace ricci {
 namespace {
 
+using ricci::testing::group_of;
 using ricci::testing::make;
 using ricci::testing::objects;
 using ricci::testing::ProgramResult;
 using ricci::testing::read_text;
 using ricci::testing::run_ricci;
 using ricci::testing::TemporaryFolder;
+using ricci::testing::values_of;
 
 nlohmann::json spectrum_of(const TemporaryFolder& folder, std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "spectrum");
@@ -124,20 +127,6 @@ std::vector<std::vector<Point>> curves_of(const std::string& file) {
     return curves;
 }
 
-const ResultGroup& group_of(const StoredRun& run, const std::string& kind) {
-    const auto& results = run.items.at(0).results;
-    const auto found =
-        std::find_if(results.begin(), results.end(), [&](const ResultGroup& g) { return g.kind == kind; });
-    if (found == results.end()) throw std::runtime_error("no group " + kind);
-    return *found;
-}
-template <class Value>
-const std::vector<Value>& array_of(const ResultGroup& group, const std::string& path) {
-    for (const ResultArray& a : group.arrays)
-        if (a.path == path) return std::get<std::vector<Value>>(a.values);
-    throw std::runtime_error("no array " + path);
-}
-
 TEST(SpectrumCommand, CurvesPicturesAndResultsAreWritten) {
     const TemporaryFolder folder;
     const std::string mesh = make(folder, "eight", 800), stored = folder / "s.h5", curves = folder / "s.obj",
@@ -158,11 +147,11 @@ TEST(SpectrumCommand, CurvesPicturesAndResultsAreWritten) {
     EXPECT_EQ(run_ricci(folder, {"verify", stored}).status, 0);
     const StoredRun run = read_run(stored);
     const ResultGroup& g = group_of(run, "spectrum");
-    EXPECT_EQ(array_of<double>(g, "length"), o["lengths"].get<std::vector<double>>());
-    EXPECT_EQ(array_of<std::int32_t>(g, "power"), o["powers"].get<std::vector<std::int32_t>>());
-    EXPECT_EQ(array_of<std::int32_t>(g, "geodesic").size(), geodesics.size());
-    const std::vector<std::int32_t>& first = array_of<std::int32_t>(g, "geodesics/points_first");
-    const std::vector<double>& points = array_of<double>(g, "geodesics/points");
+    EXPECT_EQ(values_of<double>(g, "length"), o["lengths"].get<std::vector<double>>());
+    EXPECT_EQ(values_of<std::int32_t>(g, "power"), o["powers"].get<std::vector<std::int32_t>>());
+    EXPECT_EQ(values_of<std::int32_t>(g, "geodesic").size(), geodesics.size());
+    const std::vector<std::int32_t>& first = values_of<std::int32_t>(g, "geodesics/points_first");
+    const std::vector<double>& points = values_of<double>(g, "geodesics/points");
     ASSERT_EQ(first.size(), primitive + 1);
     EXPECT_EQ(3 * static_cast<std::size_t>(first.back()), points.size());
     for (std::size_t k = 0; k < primitive; ++k) {

@@ -6,10 +6,12 @@
 
 #include "io/store/run_store.h"
 #include "tests/support/program.h"
+#include "tests/support/stored_results.h"
 
 namespace ricci {
 namespace {
 
+using ricci::testing::array_of;
 using ricci::testing::make;
 using ricci::testing::objects;
 using ricci::testing::ProgramResult;
@@ -17,12 +19,6 @@ using ricci::testing::read_text;
 using ricci::testing::run_ricci;
 using ricci::testing::TemporaryFolder;
 using ricci::testing::write_text;
-
-const ResultArray& array_of(const ResultGroup& group, const std::string& path) {
-    for (const ResultArray& a : group.arrays)
-        if (a.path == path) return a;
-    throw std::out_of_range("no array " + path);
-}
 
 TEST(Teichmuller, KeepsTheContractInJsonAndFile) {
     const TemporaryFolder folder;

@@ -21,6 +21,9 @@ SvgPicture draw_distances(const DistanceMatrix& distances, const std::vector<std
 SvgPicture draw_dendrogram(const Dendrogram& tree, const std::vector<std::size_t>& clusters,
                            const std::vector<std::string>& names, const std::string& title);
 
+/// An empty picture in pixels with its title in the upper left corner.
+SvgPicture titled_picture(double width, double height, double margin, const std::string& title);
+
 /// The names of files without the folders they share.
 std::vector<std::string> short_names(const std::vector<std::string>& names);
 

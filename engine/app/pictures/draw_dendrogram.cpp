@@ -4,6 +4,7 @@
 
 #include "engine/app/pictures/distance_pictures.h"
 #include "io/picture/axis.h"
+#include "io/picture/colour.h"
 
 namespace ricci::app {
 namespace {
@@ -11,15 +12,6 @@ namespace {
 constexpr std::size_t kMaxNames = 400;                          // shapes with names in the picture
 constexpr double kNameSize = 9.0, kRow = 12.0, kThinRow = 2.0;  // pixels
 constexpr double kMargin = 16.0, kTitle = 34.0, kAxis = 40.0, kTree = 440.0;
-
-// Colours that deficient eyes tell apart too (Okabe, Ito 2008), without the yellow, which is faint on white.
-constexpr std::array<Colour, 7> kClusterColours = {{{0, 114, 178},
-                                                    {213, 94, 0},
-                                                    {0, 158, 115},
-                                                    {204, 121, 167},
-                                                    {86, 180, 233},
-                                                    {230, 159, 0},
-                                                    {110, 90, 70}}};
 
 /// Draws one tree; user units are pixels.
 class TreeDrawing {
@@ -36,12 +28,7 @@ class TreeDrawing {
           heights_(0.0, top_height()) {}
 
     SvgPicture draw(const std::string& title) {
-        SvgPicture picture(width_, height_, {0.0, 0.0, width_, height_});
-        picture.set_title(title);
-        TextStyle style;
-        style.size = 14.0;
-        style.bold = true;
-        picture.text({kMargin, height_ - 22.0}, title, style);
+        SvgPicture picture = titled_picture(width_, height_, kMargin, title);
         place_clusters();
         draw_axis(picture);
         draw_branches(picture);
@@ -82,7 +69,7 @@ class TreeDrawing {
 
     [[nodiscard]] Colour colour_of(std::size_t cluster) const {
         const std::size_t group = group_[cluster];
-        return group == kMixed ? kGrey : kClusterColours[group % kClusterColours.size()];
+        return group == kMixed ? kGrey : kCategoryColours[group % kCategoryColours.size()];
     }
 
     void draw_branches(SvgPicture& picture) const {

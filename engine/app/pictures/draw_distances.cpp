@@ -76,12 +76,7 @@ class HeatMap {
           top_(height_ - kTitle - kMargin) {}
 
     SvgPicture draw(const std::string& title) {
-        SvgPicture picture(width_, height_, {0.0, 0.0, width_, height_});
-        picture.set_title(title);
-        TextStyle style;
-        style.size = 14.0;
-        style.bold = true;
-        picture.text({kMargin, height_ - 22.0}, title, style);
+        SvgPicture picture = titled_picture(width_, height_, kMargin, title);
         draw_cells(picture);
         if (named_) draw_names(picture);
         const double bar = std::min(side_, 240.0);
@@ -144,6 +139,16 @@ class HeatMap {
 };
 
 }  // namespace
+
+SvgPicture titled_picture(double width, double height, double margin, const std::string& title) {
+    SvgPicture picture(width, height, {0.0, 0.0, width, height});
+    picture.set_title(title);
+    TextStyle style;
+    style.size = 14.0;
+    style.bold = true;
+    picture.text({margin, height - 22.0}, title, style);
+    return picture;
+}
 
 SvgPicture draw_distances(const DistanceMatrix& distances, const std::vector<std::size_t>& order,
                           const std::vector<std::string>& names, const std::string& title) {

@@ -11,6 +11,7 @@
 
 #include "engine/app/pictures/text_places.h"
 #include "engine/shape_space/principal_components.h"
+#include "io/picture/colour.h"
 #include "io/picture/colour_map.h"
 
 namespace ricci::app {
@@ -22,17 +23,8 @@ constexpr double kBar = 12.0, kGap = 14.0, kNumbers = 58.0, kWide = 460.0, kName
 constexpr double kSecond = kLeft + kSide + kGap + kBar + kNumbers + kLeft;
 constexpr std::size_t kMostLines = 12, kMostNumbers = 24;
 
-// Colours that deficient eyes tell apart too (Okabe, Ito 2008), without the yellow, which is faint on white.
-constexpr std::array<Colour, 7> kColours = {{{0, 114, 178},
-                                             {213, 94, 0},
-                                             {0, 158, 115},
-                                             {204, 121, 167},
-                                             {86, 180, 233},
-                                             {230, 159, 0},
-                                             {110, 90, 70}}};
-
 Colour colour_of_line(std::size_t k) {
-    return kColours[k % kColours.size()];
+    return kCategoryColours[k % kCategoryColours.size()];
 }
 
 std::vector<double> dashes_of(std::size_t k) {

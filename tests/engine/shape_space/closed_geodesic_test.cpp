@@ -49,7 +49,7 @@ TEST(LinesCross, ByTheAngleOfTheirNormals) {
     EXPECT_FALSE(lines_cross({0, 1, 0}, parallel));
     EXPECT_FALSE(lines_cross({0, 1, 0}, {0, 1, 0})) << "itself";
     EXPECT_FALSE(lines_cross({0, 1, 0}, {0, -1, 0}));
-    const Minkowski meet = meeting_point({0, 1, 0}, {1, 0, 0});
+    const Minkowski meet = line_crossing(-1, {0, 1, 0}, {1, 0, 0});
     EXPECT_NEAR(meet[2], 1, 1e-15);
 }
 

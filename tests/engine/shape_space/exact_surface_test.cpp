@@ -73,7 +73,7 @@ TEST_P(ExactSurfaces, StepsAreThoseOfTheCoarseSurface) {
     ASSERT_LT(s.angle_error, 1e-9);
     double largest = 0;
     for (Index h = 0; h < s.connectivity.halfedge_count(); ++h) {
-        const Isometry<double> x = rounded(exact.step(h)), &y = s.step[at(h)];
+        const Isometry<double> x = rounded(exact.along(h)), &y = s.step[at(h)];
         largest = std::max(largest, distance_to_identity(compose(-1, inverse(y), x)));
     }
     EXPECT_LT(largest, 1e-9);

@@ -43,7 +43,7 @@ TEST_P(Markings, HandlesAreOneHoledTori) {
         b.push_back(m_.geodesic({h.vertex, h.b}));
         e.push_back(m_.geodesic(around(h)));
         // The directions where they cross: <n_a x n_b, point> > 0.
-        const Minkowski n = axis_normal(h.a), m = axis_normal(h.b), x = meeting_point(n, m);
+        const Minkowski n = axis_normal(h.a), m = axis_normal(h.b), x = line_crossing(-1, n, m);
         const double frame = n[0] * (m[1] * x[2] - m[2] * x[1]) + n[1] * (m[2] * x[0] - m[0] * x[2]) +
                              n[2] * (m[0] * x[1] - m[1] * x[0]);
         EXPECT_TRUE(lines_cross(n, m));

@@ -21,8 +21,8 @@ IsometrySet lifts_by_walking(const CoarseSurface& s, Index from, double distance
     for (std::size_t k = 0; k < all.elements().size(); ++k) {
         const Isometry<double> x = all.elements()[k];
         if (k > 0 && displacement_cosh(x) <= std::cosh(distance)) near.insert(x, all.labels()[k]);
-        for_neighbours(s, all.labels()[k], [&](Index w, const Isometry<double>& step) {
-            const Isometry<double> y = compose(-1, x, step);
+        for_neighbours(s, all.labels()[k], [&](CoarseStep step, Index w) {
+            const Isometry<double> y = compose(-1, x, s.along(step));
             if (displacement_cosh(y) <= std::cosh(reach)) all.insert(y, w);
         });
     }
