@@ -45,6 +45,7 @@ void write_curves(const SpectrumArguments& a, const std::string& suffix, const S
 }
 
 int spectrum(const SpectrumArguments& arguments, const CommonOptions& common) {
+    if (!arguments.curves.empty()) require_curve_file(arguments.curves);
     ShapeRun run(arguments.solve, arguments.files, arguments.output, common);
     SurfaceSpectrumOptions options;
     options.max_length = arguments.max_length;

@@ -8,6 +8,7 @@
 #include "engine/app/shape_arguments.h"
 #include "engine/topology/closed_path.h"
 #include "io/mesh/curve_file.h"
+#include "io/mesh/save_curves.h"
 
 namespace ricci::app {
 namespace {
@@ -67,6 +68,7 @@ void write_curves(const TeichmullerArguments& a, const ShapeItem& item, const Su
 }
 
 int teichmuller(const TeichmullerArguments& a, const CommonOptions& common) {
+    if (!a.curves.empty()) require_curve_file(a.curves);
     std::vector<VertexCurve> marking, loops;
     if (!a.marking.empty()) marking = read_curves(a.marking);
     if (!a.loops.empty()) loops = read_curves(a.loops);

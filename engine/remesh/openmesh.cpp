@@ -1,5 +1,6 @@
 #include "engine/remesh/openmesh.h"
 
+#include <Eigen/Dense>
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
@@ -26,7 +27,8 @@ using Vector = OpenMesh::Vec3d;
 
 struct Converted {
     OpenMeshSurface surface;
-    std::vector<Index> vertex;  // number in the source of each vertex
+    Vector low;  // a point p of the source is at (p - low) / size
+    double size = 1.0;
 };
 
 /// The used vertices in their order, moved and scaled into the unit cube (collapse errors are single
@@ -44,12 +46,13 @@ Converted to_openmesh(const SurfaceMesh& mesh) {
     }
     const double size = (high - low).max();
     Converted result;
+    result.low = low;
+    result.size = size;
     std::vector<OpenMeshSurface::VertexHandle> handle(used.size());
     for (std::size_t v = 0; v < used.size(); ++v) {
         if (used[v] == 0) continue;
         const Vector p(mesh.points[v][0], mesh.points[v][1], mesh.points[v][2]);
         handle[v] = result.surface.add_vertex((p - low) / size);
-        result.vertex.push_back(static_cast<Index>(v));
     }
     for (const Triangle& t : triangles_of(mesh.connectivity)) {
         const auto corner = [&](std::size_t k) { return handle[static_cast<std::size_t>(t[k])]; };
@@ -92,7 +95,7 @@ class SurfaceError : public OpenMesh::Decimater::ModBaseT<MeshT> {
     }
 
     float collapse_priority(const CollapseInfo& collapse) override {
-        const double worst = quality_after(collapse);
+        const double worst = worst_quality_with(collapse.v0, collapse.v1, collapse.p1);
         if (!(worst > 0.0)) return Base::ILLEGAL_COLLAPSE;
         const Quadric sum = quadric(collapse.v0) + quadric(collapse.v1);
         // Quadric error alone makes thin triangles, and the flow has to live with them: measured on the
@@ -103,6 +106,21 @@ class SurfaceError : public OpenMesh::Decimater::ModBaseT<MeshT> {
 
     void postprocess_collapse(const CollapseInfo& collapse) override {
         quadric(collapse.v1) += quadric(collapse.v0);
+    }
+
+    /// Moves every vertex to the point nearest to the planes of all faces that ended in it, as far as the
+    /// faces around it allow: a subset of the input's vertices lies on one side of a curved surface, and its
+    /// faces are shrunk. In order, each vertex seeing those before it in their new places.
+    void place_vertices() {
+        for (const auto vertex : Base::mesh().vertices()) {  // skips deleted ones
+            const Vector from = Base::mesh().point(vertex);
+            const Vector step = best_place(quadric(vertex)) - from;
+            for (double share = 1.0; share > kLeastShare; share *= 0.5) {
+                if (!(worst_quality_with(vertex, vertex, from + share * step) > 0.0)) continue;
+                Base::mesh().set_point(vertex, from + share * step);
+                break;
+            }
+        }
     }
 
   private:
@@ -118,6 +136,8 @@ class SurfaceError : public OpenMesh::Decimater::ModBaseT<MeshT> {
     // Faces below this quality (1: equilateral; 0.2: smallest angle about seven degrees) are made only out of
     // worse ones.
     static constexpr double kLeastQuality = 0.2;
+    // A vertex that cannot go this part of its way stays.
+    static constexpr double kLeastShare = 0.1;
 
     Quadric& quadric(OpenMesh::VertexHandle v) { return quadric_[static_cast<std::size_t>(v.idx())]; }
 
@@ -159,10 +179,20 @@ class SurfaceError : public OpenMesh::Decimater::ModBaseT<MeshT> {
         return kTwoSqrt3 * twice_area / ((b - a).sqrnorm() + (c - b).sqrnorm() + (a - c).sqrnorm());
     }
 
-    /// Quality of the worst face at v0 when v0 moves to v1; 0 when one turns over or becomes a sliver.
-    double quality_after(const CollapseInfo& collapse) {
+    /// Where the quadric is smallest. Distances to vertices are part of it, so that there is one such point.
+    static Vector best_place(const Quadric& q) {
+        Eigen::Matrix3d a;
+        a << q.xx(), q.xy(), q.xz(), q.xy(), q.yy(), q.yz(), q.xz(), q.yz(), q.zz();
+        const Eigen::Vector3d place = a.ldlt().solve(-Eigen::Vector3d(q.xw(), q.yw(), q.zw()));
+        return {place[0], place[1], place[2]};
+    }
+
+    /// Quality of the worst face at `moved` when that goes to `place`, faces that also hold `target` vanish
+    /// (a collapse; target == moved: none does); 0 when one turns over or becomes a sliver.
+    double worst_quality_with(OpenMesh::VertexHandle moved, OpenMesh::VertexHandle target,
+                              const Vector& place) {
         double worst_before = 1.0, worst_after = 1.0;
-        for (const auto face : Base::mesh().vf_range(collapse.v0)) {
+        for (const auto face : Base::mesh().vf_range(moved)) {
             std::array<OpenMesh::VertexHandle, 3> corner;
             std::size_t k = 0;
             for (const auto vertex : Base::mesh().fv_range(face)) corner[k++] = vertex;
@@ -170,8 +200,8 @@ class SurfaceError : public OpenMesh::Decimater::ModBaseT<MeshT> {
             bool vanishes = false;
             for (std::size_t c = 0; c < 3; ++c) {
                 before[c] = Base::mesh().point(corner[c]);
-                after[c] = corner[c] == collapse.v0 ? collapse.p1 : before[c];
-                vanishes = vanishes || corner[c] == collapse.v1;
+                after[c] = corner[c] == moved ? place : before[c];
+                vanishes = vanishes || (target != moved && corner[c] == target);
             }
             const Vector old_normal = (before[1] - before[0]) % (before[2] - before[0]);
             const double old_area = old_normal.norm();
@@ -198,8 +228,9 @@ SurfaceMesh decimate(const SurfaceMesh& mesh, Index target_faces) {
     decimater.add(module);
     decimater.initialize();
     decimater.decimate_to_faces(0, static_cast<std::size_t>(std::max<Index>(target_faces, 0)));
+    decimater.module(module).place_vertices();
     std::vector<Triangle> triangles = triangles_of_openmesh(source.surface);
-    std::vector<Index> number(source.vertex.size(), -1);
+    std::vector<Index> number(source.surface.n_vertices(), -1);
     for (const Triangle& t : triangles) {
         for (const Index v : t) number[static_cast<std::size_t>(v)] = 0;
     }
@@ -207,7 +238,9 @@ SurfaceMesh decimate(const SurfaceMesh& mesh, Index target_faces) {
     for (std::size_t v = 0; v < number.size(); ++v) {
         if (number[v] < 0) continue;
         number[v] = static_cast<Index>(points.size());
-        points.push_back(mesh.points[static_cast<std::size_t>(source.vertex[v])]);
+        const Vector p = source.low + source.size * source.surface.point(
+                                                        OpenMeshSurface::VertexHandle(static_cast<int>(v)));
+        points.push_back({p[0], p[1], p[2]});
     }
     for (Triangle& t : triangles) {
         for (Index& v : t) v = number[static_cast<std::size_t>(v)];

@@ -155,22 +155,28 @@ void write_vtp(MeshText& out, std::span<const NamedCurve> curves) {
     out << "</Piece>\n</PolyData>\n</VTKFile>\n";
 }
 
-}  // namespace
+using CurveWriter = void (*)(MeshText& out, std::span<const NamedCurve> curves);
 
-void save_curves(const std::string& path, std::span<const NamedCurve> curves) {
+CurveWriter writer_for(const std::string& path) {
     std::string suffix = std::filesystem::path(path).extension().string();
     for (char& c : suffix) c = (c >= 'A' && c <= 'Z') ? static_cast<char>(c + ('a' - 'A')) : c;
+    if (suffix == ".obj") return write_obj;
+    if (suffix == ".vtk") return write_vtk;
+    if (suffix == ".vtp") return write_vtp;
+    throw FileError(path + ": curves are written as .obj, .vtk or .vtp");
+}
+
+}  // namespace
+
+void require_curve_file(const std::string& path) {
+    writer_for(path);
+}
+
+void save_curves(const std::string& path, std::span<const NamedCurve> curves) {
+    const CurveWriter write = writer_for(path);
     check(curves);
     MeshText out;
-    if (suffix == ".obj") {
-        write_obj(out, curves);
-    } else if (suffix == ".vtk") {
-        write_vtk(out, curves);
-    } else if (suffix == ".vtp") {
-        write_vtp(out, curves);
-    } else {
-        throw FileError(path + ": curves are written as .obj, .vtk or .vtp");
-    }
+    write(out, curves);
     write_file_bytes(path, out.text());
 }
 

@@ -16,6 +16,9 @@ struct NamedCurve {
     std::vector<Point> points;
 };
 
+/// Throws FileError for a suffix that save_curves does not know.
+void require_curve_file(const std::string& path);
+
 /// Writes curves by suffix, coordinates as shortest round-trip decimals:
 ///   .obj  `v` and one `l` element per curve, each an object of its name (blanks become '_');
 ///   .vtk  legacy VTK, POLYDATA with one line per curve and the cell data `curve` (number), `length`, `name`;
