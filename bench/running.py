@@ -57,10 +57,10 @@ def command_note(ricci):
     """Which command made a file, and with what."""
     words = ["python3", os.path.relpath(sys.argv[0], ROOT)] + [w for w in sys.argv[1:]]
     kept, skip = [], False
-    for word in words:  # where the program lies says nothing to a reader
+    for word in words:  # where things lie says nothing to a reader
         if skip:
             skip = False
-        elif word == "--ricci":
+        elif word in ("--ricci", "--work", "--layer"):
             skip = True
         else:
             kept.append(word)
