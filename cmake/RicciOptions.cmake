@@ -30,6 +30,9 @@ if(RICCI_SANITIZE)
     target_link_options(ricci_options INTERFACE -fsanitize=${RICCI_SANITIZE})
     # A sanitizer's runtime is not up yet when ifunc resolvers run.
     target_compile_definitions(ricci_options INTERFACE RICCI_NO_CLONES)
+    if(RICCI_SANITIZE MATCHES thread)
+        target_compile_definitions(ricci_options INTERFACE RICCI_PLAIN_THREADS)
+    endif()
 endif()
 
 function(ricci_add_room name sources)

@@ -1,6 +1,7 @@
 // Attributes of the result file and their checksum.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "io/store/durable.h"
@@ -19,7 +20,9 @@ std::string where(hid_t object, const char* name) {
 }
 
 Handle open_attribute(hid_t object, const char* name) {
-    return {H5Aopen(object, name, H5P_DEFAULT), where(object, name) + " is missing"};
+    const std::string what =
+        where(object, name) + " is missing";  // asking for names forgets HDF5's last error
+    return {H5Aopen(object, name, H5P_DEFAULT), what};
 }
 
 hsize_t value_count(hid_t attribute, const std::string& what) {
@@ -72,9 +75,10 @@ std::vector<std::string> attribute_names(hid_t object) {
         static_cast<std::vector<std::string>*>(list)->emplace_back(name);
         return 0;
     };
+    const std::string what = name_of(object) + ": cannot list the attributes";
     hsize_t start = 0;
-    check(H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, &start, collect, &names),
-          name_of(object) + ": cannot list the attributes");
+    check(H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_NATIVE, &start, collect, &names), what);
+    std::sort(names.begin(), names.end());
     return names;
 }
 
@@ -132,31 +136,22 @@ template std::uint64_t read_attribute(hid_t, const char*);
 
 std::uint64_t attribute_digest(hid_t object) {
     std::string all;
-    const auto add = [](hid_t of, const char* name, const H5A_info_t*, void* text) -> herr_t {
-        if (unsealed(name)) return 0;
-        // No exception may cross HDF5's frames: a failure ends the iteration and is thrown outside.
-        try {
-            const std::string what = where(of, name);
-            const Handle attribute(H5Aopen(of, name, H5P_DEFAULT), what);
-            const Handle type(H5Aget_type(attribute), what);
-            std::string values;
-            if (H5Tis_variable_str(type) > 0) {
-                for (const std::string& value : texts_of(attribute, what))
-                    values += fmt::format("{}:{}", value.size(), value);
-            } else {
-                values.resize(value_count(attribute, what) * H5Tget_size(type));
-                check(H5Aread(attribute, type, values.data()), what);
-            }
-            *static_cast<std::string*>(text) += fmt::format("{}={}:{};", name, values.size(), values);
-            return 0;
-        } catch (const FileError&) {
-            return -1;
+    for (const std::string& name : attribute_names(object)) {
+        if (unsealed(name)) continue;
+        const std::string what = where(object, name.c_str());
+        const Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), what);
+        const Handle type(H5Aget_type(attribute), what);
+        std::string values;
+        if (H5Tis_variable_str(type) > 0) {
+            for (const std::string& value : texts_of(attribute, what))
+                values += fmt::format("{}:{}", value.size(), value);
+        } else {
+            values.resize(value_count(attribute, what) * H5Tget_size(type));
+            check(H5Aread(attribute, type, values.data()), what);
         }
-    };
-    hsize_t start = 0;
-    const std::string what = name_of(object) + ": cannot read the attributes";
-    check(H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, &start, add, &all), what);
-    return checksum_of(std::string_view(all));
+        all += fmt::format("{}={}:{};", name, values.size(), values);
+    }
+    return checksum_of(all);
 }
 
 void seal(hid_t object) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <utility>
 
@@ -155,7 +156,9 @@ Handle create_group(hid_t parent, const std::string& name) {
 }
 
 Handle open_group(hid_t parent, const std::string& name) {
-    return {H5Gopen2(parent, name.c_str(), H5P_DEFAULT), name_of(parent) + ": no group " + name};
+    const std::string what =
+        name_of(parent) + ": no group " + name;  // before the call: asking forgets errors
+    return {H5Gopen2(parent, name.c_str(), H5P_DEFAULT), what};
 }
 
 bool has_link(hid_t parent, const std::string& name) {
@@ -168,14 +171,23 @@ std::vector<std::string> link_names(hid_t group) {
     const Handle creation(H5Gget_create_plist(opened), where);
     unsigned order = 0;
     check(H5Pget_link_creation_order(creation, &order), where);
-    const H5_index_t index = (order & H5P_CRT_ORDER_INDEXED) != 0 ? H5_INDEX_CRT_ORDER : H5_INDEX_NAME;
-    std::vector<std::string> names;
-    const auto collect = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
-        static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+    const bool created = (order & H5P_CRT_ORDER_INDEXED) != 0;
+    // In the order of storage: asked for any other, HDF5 1.10 first makes a table of all links, and frees
+    // what it never filled when a read fails in the middle of that.
+    std::vector<std::pair<std::int64_t, std::string>> links;
+    const auto collect = [](hid_t, const char* name, const H5L_info_t* link, void* list) -> herr_t {
+        static_cast<decltype(links)*>(list)->emplace_back(link->corder, name);
         return 0;
     };
     hsize_t start = 0;
-    check(H5Literate(group, index, H5_ITER_INC, &start, collect, &names), where + ": cannot list");
+    check(H5Literate(group, created ? H5_INDEX_CRT_ORDER : H5_INDEX_NAME, H5_ITER_NATIVE, &start, collect,
+                     &links),
+          where + ": cannot list");
+    std::sort(links.begin(), links.end(), [&](const auto& x, const auto& y) {
+        return created ? x.first < y.first : x.second < y.second;
+    });
+    std::vector<std::string> names;
+    for (auto& [number, name] : links) names.push_back(std::move(name));
     return names;
 }
 

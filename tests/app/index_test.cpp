@@ -302,6 +302,15 @@ TEST(IndexCommand, DistancesAgreeInEveryForm) {
     EXPECT_EQ(c.run({"distances", index, "-o", c.folder / "all.txt"}).status, 2);
 }
 
+TEST(IndexCommand, SameBitsForAnyNumberOfThreads) {
+    const Collection c;
+    for (const char* threads : {"1", "2", "3", "8"}) {
+        const std::string index = c.folder / (std::string(threads) + ".h5");
+        ASSERT_EQ(c.run({"build", c.folder / "set", "--threads", threads, "-o", index}).status, 0);
+        expect_same(c.folder / "1.h5", index);
+    }
+}
+
 TEST(IndexCommand, KilledAtRandomMomentsAndResumedEqualsUndisturbed) {
     const Collection c;
     for (int k = 5; k < 60; ++k) make_bent(c.folder, c.eights[0], k, "set/more" + std::to_string(k) + ".off");

@@ -89,11 +89,13 @@ TEST(Program, SweepIsTheSameForAnyThreadsAndVerifies) {
     sweep("one.h5", "1");
     sweep("two.h5", "2");
     sweep("three.h5", "3");
+    sweep("eight.h5", "8");
     const StoredRun one = read_run(folder / "one.h5");
     ASSERT_EQ(one.items.size(), 2U);
     EXPECT_EQ(one.items[0].sweep->rows.size(), 60U);
     expect_same(one, read_run(folder / "two.h5"));
     expect_same(one, read_run(folder / "three.h5"));
+    expect_same(one, read_run(folder / "eight.h5"));
     const ProgramResult verified = run_ricci(folder, {"verify", folder / "one.h5", "--recompute", "--json"});
     EXPECT_EQ(verified.status, 0) << verified.err;
     EXPECT_EQ(objects(verified.out).at(0)["recomputed"].size(), 12U)
