@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <thread>
+#include <vector>
 
 namespace ricci {
 
@@ -21,6 +23,17 @@ int hardware_threads();
 /// Runs body(0) … body(workers-1), at most so many at a time, and waits. A body may wait for another one's
 /// progress only if that one is running already. The first exception is rethrown.
 void run_workers(int workers, const std::function<void(int)>& body);
+
+/// Threads that join workers under way, for a process that is given more processors as it runs. Their bodies
+/// must not throw. Destruction waits for them.
+class ExtraThreads {
+  public:
+    void start(std::function<void()> body) { threads_.emplace_back(std::move(body)); }
+    [[nodiscard]] int count() const { return static_cast<int>(threads_.size()); }
+
+  private:
+    std::vector<std::jthread> threads_;
+};
 
 /// Runs `body` with parallel loops inside it limited to `threads`.
 void with_thread_limit(int threads, const std::function<void()>& body);

@@ -49,7 +49,11 @@ class Queue {
   public:
     Queue(std::size_t sources, const std::function<std::vector<SweepTask>(std::size_t)>& open,
           SweepSink& sink, const SchedulerOptions& options)
-        : sources_(sources), open_(&open), sink_(&sink), options_(&options) {}
+        : sources_(sources),
+          open_(&open),
+          sink_(&sink),
+          options_(&options),
+          threads_(std::max(options.threads, 1)) {}
 
     void work() {
         Seat seat;
@@ -59,6 +63,16 @@ class Queue {
             fail();
         }
         leave(seat);
+    }
+
+    /// Waits for the threads that were added, and for those that they added.
+    void join() {
+        for (;;) {
+            ExtraThreads joined;
+            const std::lock_guard lock(mutex_);
+            if (extra_.count() == 0) return;
+            std::swap(joined, extra_);
+        }
     }
 
     void rethrow() const {
@@ -176,12 +190,26 @@ class Queue {
         hand_over(seat);
     }
 
+    /// Starts the threads that were granted since the last look. Under the mutex.
+    void grow() {
+        if (!options_->grant) return;
+        for (const int granted = options_->grant(); threads_ < granted; ++threads_)
+            extra_.start([this] { work(); });
+    }
+
     /// The next vertex of the seat's item, as long as the seat holds no more than its share of what is not
     /// solved yet: near the end of an item the threads keep fewer lanes each, rather than some of them none.
     std::optional<Index> next_vertex(Seat& seat) {
+        const std::optional<Index> vertex = draw(seat);
+        if (vertex) sink_->solve_started(seat.item->task.item, *vertex);
+        return vertex;
+    }
+
+    std::optional<Index> draw(Seat& seat) {
         const std::lock_guard lock(mutex_);
+        grow();
         OpenItem& item = *seat.item;
-        const auto threads = static_cast<std::size_t>(std::max(options_->threads, 1));
+        const auto threads = static_cast<std::size_t>(threads_);
         const std::size_t unsolved = item.task.vertices.size() - item.solved;
         if (stopped() || !item.has_work() || seat.under_way >= (unsolved + threads - 1) / threads)
             return std::nullopt;
@@ -254,7 +282,9 @@ class Queue {
     bool opening_ = false;
     std::int64_t used_memory_ = 0, solves_done_ = 0, solves_known_ = 0;
     int seats_taken_ = 0;
+    int threads_;
     std::exception_ptr error_;
+    ExtraThreads extra_;
 };
 
 /// SplitMix64 (Steele, Lea, Flood 2014).
@@ -285,6 +315,7 @@ void run_sweeps(std::size_t sources, const std::function<std::vector<SweepTask>(
                 SweepSink& sink, const SchedulerOptions& options) {
     Queue queue(sources, open, sink, options);
     run_workers(std::max(options.threads, 1), [&](int) { queue.work(); });
+    queue.join();
     queue.rethrow();
 }
 

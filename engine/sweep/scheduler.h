@@ -21,6 +21,7 @@ struct SweepTask {
 
 struct SchedulerOptions {
     int threads = 1;
+    std::function<int()> grant;    // threads allowed by now, where they become more; empty: `threads`
     std::int64_t max_memory = 0;   // bytes for surfaces and workers; 0: no limit
     double timeout_seconds = 0.0;  // per solve, from its start, whatever else runs; 0: none
     double block_seconds = 5.0;    // a worker hands over its finished solves about this often
@@ -37,6 +38,8 @@ struct SchedulerProgress {
 class SweepSink {
   public:
     virtual ~SweepSink() = default;
+    /// A solve is about to begin. An exception stops everything, as those of the other calls do.
+    virtual void solve_started(std::size_t /*item*/, Index /*vertex*/) {}
     /// Solves of one item in any order among blocks, ascending by vertex within one.
     virtual void block_finished(std::size_t item, std::vector<SweepSolve> solves) = 0;
     /// All vertices of an item are solved; `seconds` is the time since it was opened.

@@ -8,11 +8,7 @@
 #include <xxhash.h>
 
 #include <array>
-#include <atomic>
 #include <cerrno>
-#include <charconv>
-#include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <system_error>
@@ -147,18 +143,6 @@ FolderLock::FolderLock(const std::string& folder) {
             locked.st_ino == named.st_ino && locked.st_dev == named.st_dev)
             return;
     }
-}
-
-void fault_point(const char* name) {
-    const char* wanted = std::getenv("RICCI_FAULT");  // NOLINT(concurrency-mt-unsafe): tests set it before
-    if (wanted == nullptr) return;
-    const std::string_view text(wanted);
-    const std::size_t colon = text.find(':');
-    if (colon == std::string_view::npos || text.substr(0, colon) != name) return;
-    int count = 0;
-    std::from_chars(text.data() + colon + 1, text.data() + text.size(), count);
-    static std::atomic<int> passes = 0;
-    if (++passes == count) std::raise(SIGKILL);
 }
 
 }  // namespace ricci

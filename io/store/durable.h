@@ -1,5 +1,5 @@
 // Files that survive a crash: writes that are checked to the end, fsync of files and folders, checksums, a
-// lock on a folder, and fault points for the tests that kill the process in the middle of it all.
+// lock on a folder. Between their steps lie fault points (io/store/fault_point.h).
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/mesh/mesh_file.h"
+#include "io/store/fault_point.h"
 
 namespace ricci {
 
@@ -74,9 +75,5 @@ class FolderLock {
   private:
     FileDescriptor folder_;
 };
-
-/// Dies by SIGKILL at the n-th pass of the point `name` when the environment says RICCI_FAULT=name:n. For the
-/// crash tests; costs one look at the environment, at places that wait for a disk anyway.
-void fault_point(const char* name);
 
 }  // namespace ricci

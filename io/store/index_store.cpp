@@ -139,6 +139,15 @@ std::int32_t IndexStore::known_components(std::uint64_t hash) const {
     return components;
 }
 
+std::vector<std::int32_t> IndexStore::components_known(std::uint64_t hash) const {
+    const std::lock_guard guard(impl_->mutex);
+    std::vector<std::int32_t> components;
+    for (auto shape = impl_->shapes.lower_bound({hash, 0});
+         shape != impl_->shapes.end() && shape->first.first == hash; ++shape)
+        components.push_back(shape->first.second);
+    return components;
+}
+
 bool IndexStore::knows(std::uint64_t hash, std::int32_t component) const {
     const std::lock_guard guard(impl_->mutex);
     return impl_->shapes.contains({hash, component});

@@ -35,6 +35,8 @@ class IndexStore {
     [[nodiscard]] std::vector<std::string> notes() const;
     /// Components of a file with these bytes, when all of them are known; 0 otherwise.
     [[nodiscard]] std::int32_t known_components(std::uint64_t hash) const;
+    /// Their numbers, ascending.
+    [[nodiscard]] std::vector<std::int32_t> components_known(std::uint64_t hash) const;
     [[nodiscard]] bool knows(std::uint64_t hash, std::int32_t component) const;
     /// Throws std::invalid_argument for one that is not known.
     [[nodiscard]] ShapeRecord shape(std::uint64_t hash, std::int32_t component) const;

@@ -1,5 +1,7 @@
 #include "io/store/run_state.h"
 
+#include <cmath>
+
 #include "io/store/schema.h"
 
 namespace ricci {
@@ -39,8 +41,10 @@ RunState read_contents(const std::string& path, const std::string& recorded, con
         const hdf5::Handle group = hdf5::open_group(items, name);
         ItemState& item = state.items[name];
         if (hdf5::has_link(group, "mesh")) {
-            item.vertex_count = schema::vertex_slots(schema::read_item(group, name));
+            const ItemRecord record = schema::read_item(group, name);
+            item.vertex_count = schema::vertex_slots(record);
             item.file = recorded;
+            item.source = {record.source, record.source_hash};
         }
         if (hdf5::has_link(group, "sweep")) read_sweep(group, name, recorded, status, item);
         if (hdf5::has_link(group, "flow")) item.flow_file = recorded;
@@ -52,16 +56,25 @@ RunState read_contents(const std::string& path, const std::string& recorded, con
     return state;
 }
 
+// A converged row has a finite area distortion (require_valid); any other has none.
+bool replaceable(const SweepRow& row) {
+    return !std::isfinite(row.area_distortion);
+}
+
 void merge_contents(RunState& state, RunState part) {
     for (auto& [name, item] : part.items) {
         ItemState& known = state.items[name];
         if (known.file.empty()) {
             known.file = item.file;
             known.vertex_count = item.vertex_count;
+            known.source = item.source;
         }
         if (known.flow_file.empty()) known.flow_file = item.flow_file;
         known.result_files.merge(item.result_files);
-        known.rows.merge(item.rows);
+        for (const auto& [vertex, row] : item.rows) {
+            const auto [there, added] = known.rows.emplace(vertex, row);
+            if (!added && replaceable(there->second)) there->second = row;
+        }
         known.factors.merge(item.factors);
     }
     state.failures.merge(part.failures);

@@ -23,6 +23,7 @@ struct FactorSource {
 /// What is finished of one item. Conformal factors and meshes stay on disk.
 struct ItemState {
     std::string file;                                 // holds the item's mesh; empty: not stored
+    ItemSource source;                                // of that mesh
     std::string flow_file;                            // holds its flow; empty: none
     std::map<std::string, std::string> result_files;  // kind of a further result: the file that holds it
     std::size_t vertex_count = 0;                     // V, once the mesh is stored
@@ -40,7 +41,10 @@ struct RunState {
 /// hdf5::Session. Throws FileError.
 RunState read_contents(const std::string& path, const std::string& recorded, const StatusNames& status);
 
-/// Adds what is new in `part`; what is there already stays.
+/// Whether a row stands for a solve that failed: another for the same vertex replaces it.
+bool replaceable(const SweepRow& row);
+
+/// Adds what is new in `part`; what is there already stays, but for rows that are replaceable.
 void merge_contents(RunState& state, RunState part);
 
 /// Reads one conformal factor. Throws FileError.

@@ -28,6 +28,10 @@ FailureRecord stored_failure(const FailureRecord& failure) {
 
 }  // namespace
 
+std::string stored_form(const std::string& text) {
+    return hdf5::stored_text(text);
+}
+
 struct RunStore::Impl {
     Impl(std::string output, RunInfo run_info, bool resume);
 
@@ -166,6 +170,13 @@ ItemRecord RunStore::read_item(const std::string& item) const {
     return schema::read_item(hdf5::open_group(file, item_path(name)), name);
 }
 
+std::optional<ItemSource> RunStore::source_of(const std::string& item) const {
+    const std::lock_guard guard(impl_->mutex);
+    const ItemState* found = impl_->find_item(item);
+    if (found == nullptr || found->file.empty()) return std::nullopt;
+    return found->source;
+}
+
 std::vector<SweepRow> RunStore::finished_rows(const std::string& item) const {
     const std::lock_guard guard(impl_->mutex);
     std::vector<SweepRow> rows;
@@ -196,6 +207,13 @@ bool RunStore::has_failure(const FailureRecord& failure) const {
     const FailureRecord stored = stored_failure(failure);
     const std::lock_guard guard(impl_->mutex);
     return impl_->state.failures.contains(std::pair(stored.item, stored.stage));
+}
+
+std::optional<FailureRecord> RunStore::failure_of(const std::string& item, const std::string& stage) const {
+    const std::lock_guard guard(impl_->mutex);
+    const auto found = impl_->state.failures.find({hdf5::stored_text(item), hdf5::stored_text(stage)});
+    if (found == impl_->state.failures.end()) return std::nullopt;
+    return found->second;
 }
 
 std::vector<FailureRecord> RunStore::failures() const {
@@ -230,7 +248,9 @@ void RunStore::write_sweep_block(const SweepBlock& block) {
               [](const SweepRow& a, const SweepRow& b) { return a.vertex < b.vertex; });
     std::vector<Index> vertices;
     for (const SweepRow& row : rows) {
-        if (item.rows.contains(row.vertex) || (!vertices.empty() && vertices.back() == row.vertex))
+        const auto known = item.rows.find(row.vertex);
+        if ((known != item.rows.end() && !replaceable(known->second)) ||
+            (!vertices.empty() && vertices.back() == row.vertex))
             throw std::invalid_argument(
                 fmt::format("item {}: vertex {} is stored already", name, row.vertex));
         vertices.push_back(row.vertex);

@@ -31,6 +31,9 @@ struct RunInfo {
     std::string created;  // ISO 8601, UTC; set by read_run, ignored by RunStore
 };
 
+/// Text as the store keeps it.
+std::string stored_form(const std::string& text);
+
 /// One item: a surface at one resolution. Its name is <stem>@<faces>, made unique by ~2, ~3 in input order.
 struct ItemRecord {
     std::string name;
@@ -42,6 +45,11 @@ struct ItemRecord {
     std::vector<Index> source_vertex;  // V, or empty where the surface was not resampled
     std::vector<Index> twin;           // 3F, intrinsic surfaces only: mesh/twin
     std::vector<double> edge_length;   // 3F, intrinsic surfaces only: mesh/edge_length
+};
+
+/// Where an item's mesh came from, as its record has it.
+struct ItemSource {
+    std::string source, source_hash;
 };
 
 /// One row of a sweep.
@@ -102,8 +110,9 @@ struct FailureRecord {
 /// A run in progress: every method is thread-safe; a write_ method returns once its segment is durable.
 /// Throws FileError on input/output failures (disk full, ...); the journal then still tells the truth, and
 /// the store can be used further. std::invalid_argument on records whose sizes do not fit together, on a
-/// vertex, item, flow or further result that is stored already, and on results of an item that is not. A
-/// process that may meet a file size limit ignores SIGXFSZ, so that the limit becomes a FileError.
+/// vertex, item, flow or further result that is stored already (a row without area distortion, of a solve
+/// that failed, is replaced instead), and on results of an item that is not. A process that may meet a file
+/// size limit ignores SIGXFSZ, so that the limit becomes a FileError.
 class RunStore {
   public:
     /// Starts `output`.parts afresh (removing left-overs) or, with `resume`, continues what its journal
@@ -119,12 +128,15 @@ class RunStore {
 
     [[nodiscard]] bool has_item(const std::string& item) const;         // its mesh is stored
     [[nodiscard]] ItemRecord read_item(const std::string& item) const;  // throws invalid_argument
+    [[nodiscard]] std::optional<ItemSource> source_of(const std::string& item) const;
     [[nodiscard]] std::vector<Index> finished_vertices(const std::string& item) const;  // ascending
     [[nodiscard]] std::vector<SweepRow> finished_rows(const std::string& item) const;   // ascending by vertex
     [[nodiscard]] bool has_flow(const std::string& item) const;
     [[nodiscard]] bool has_result(const std::string& item, const std::string& kind) const;  // a further one
     [[nodiscard]] bool has_failure(const FailureRecord& failure) const;  // same item and stage
-    [[nodiscard]] std::vector<FailureRecord> failures() const;           // in order of item and stage
+    [[nodiscard]] std::optional<FailureRecord> failure_of(const std::string& item,
+                                                          const std::string& stage) const;
+    [[nodiscard]] std::vector<FailureRecord> failures() const;  // in order of item and stage
     /// What resuming did not believe (torn journal line, damaged segment and the rows lost with it), for the
     /// log.
     [[nodiscard]] std::vector<std::string> notes() const;

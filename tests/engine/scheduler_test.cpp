@@ -5,13 +5,16 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "engine/surfaces/generate.h"
@@ -119,6 +122,40 @@ TEST(Scheduler, RowsDoNotDependOnThreadsOrBlocks) {
                 << threads << " threads, blocks of " << block_seconds;
             EXPECT_EQ(recorder.finished, reference.finished);
         }
+}
+
+TEST(Scheduler, ThreadsMayBeAddedOnTheWay) {
+    Recorder reference;
+    run_sweeps(3, open_sample, reference, {});
+    /// Keeps the threads that solve, and the starts of solves.
+    class Threads : public Recorder {
+      public:
+        void solve_started(std::size_t item, Index vertex) override {
+            std::unique_lock lock(mutex_);
+            ids.insert(std::this_thread::get_id());
+            EXPECT_TRUE(started.emplace(item, vertex).second);
+            changed_.notify_all();
+            // The first thread leaves work for those that are still to come.
+            if (started.size() == 20)
+                changed_.wait_for(lock, std::chrono::minutes(1), [&] { return ids.size() > 1; });
+        }
+        std::set<std::thread::id> ids;
+        std::set<std::pair<std::size_t, Index>> started;
+
+      private:
+        std::mutex mutex_;
+        std::condition_variable changed_;
+    };
+    Threads recorder;
+    SchedulerOptions options;
+    std::atomic<int> asked = 0;
+    options.grant = [&] { return ++asked < 10 ? 1 : 3; };
+    run_sweeps(3, open_sample, recorder, options);
+    EXPECT_TRUE(recorder.rows == reference.rows);
+    EXPECT_EQ(recorder.finished, reference.finished);
+    EXPECT_EQ(recorder.started.size(), recorder.rows.size());
+    EXPECT_GT(recorder.ids.size(), 1U);
+    EXPECT_LE(recorder.ids.size(), 3U);
 }
 
 TEST(Scheduler, RowsDoNotDependOnLanes) {

@@ -287,5 +287,57 @@ TEST(StoreRunStore, UnusableFolderIsAFileError) {
     EXPECT_THROW(read_run("/no/such/file.h5"), FileError);
 }
 
+// A row of a failed solve gives way to a later one, in the parts, across a resume, and over a complete file.
+TEST(StoreRunStore, FailedRowsAreReplacedAndOnlyThose) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("run.h5");
+    const ItemRecord item = sample_item("a@18", 3);
+    const auto mended = [&](Index vertex) {
+        SweepBlock block{item.name, {sample_row(vertex)}, {}};
+        block.rows[0].status = 0;
+        block.rows[0].area_distortion = 0.5;
+        block.kept = {{vertex, 0.5, sample_factor(vertex, item.vertices).conformal_factor}};
+        return block;
+    };
+    {
+        RunStore store(path, sample_info(), false);
+        store.write_item(item);
+        store.write_sweep_block(sample_block(item, range(0, 5)));  // vertex 4 failed
+        store.write_failure({item.name, "sweep vertex 4", "max_iterations", ""});
+        EXPECT_THROW(store.write_sweep_block(mended(3)), std::invalid_argument);
+        SweepBlock twice = mended(4);
+        twice.rows.push_back(twice.rows[0]);
+        EXPECT_THROW(store.write_sweep_block(twice), std::invalid_argument);
+        SweepBlock failed_again = sample_block(item, {4});
+        failed_again.rows[0].flips = 77;
+        store.write_sweep_block(failed_again);
+        EXPECT_EQ(store.finished_rows(item.name).at(4).flips, 77);
+    }
+    {
+        RunStore store(path, sample_info(), true);
+        EXPECT_TRUE(store.notes().empty());
+        EXPECT_EQ(store.finished_rows(item.name).at(4).flips, 77);
+        ASSERT_TRUE(store.failure_of(item.name, "sweep vertex 4").has_value());
+        EXPECT_EQ(store.failure_of(item.name, "sweep vertex 4")->status, "max_iterations");
+        EXPECT_FALSE(store.failure_of(item.name, "sweep vertex 3").has_value());
+        EXPECT_EQ(store.source_of(item.name)->source_hash, item.source_hash);
+        EXPECT_FALSE(store.source_of("b").has_value());
+        store.assemble({item.name}, kSampleKeep);
+    }
+    {
+        RunStore store(path, sample_info(), true);
+        store.write_sweep_block(mended(4));
+        store.retract_failure({item.name, "sweep vertex 4", "", ""});
+        EXPECT_THROW(store.write_sweep_block(mended(4)), std::invalid_argument);
+    }
+    RunStore store(path, sample_info(), true);  // base and parts
+    EXPECT_EQ(store.finished_rows(item.name).at(4).area_distortion, 0.5);
+    store.assemble({item.name}, kSampleKeep);
+    const StoredRun run = read_run(path);
+    EXPECT_TRUE(run.failures.empty());
+    EXPECT_EQ(run.items[0].sweep->best, 4);
+    EXPECT_EQ(verify_structure(path), std::vector<std::string>());
+}
+
 }  // namespace
 }  // namespace ricci
