@@ -10,6 +10,7 @@
 #include <new>
 
 #include "engine/app/commands.h"
+#include "engine/app/isolation/child_main.h"
 #include "engine/app/version.h"
 #include "engine/linear/symmetric_solver.h"
 #include "io/mesh/mesh_file.h"
@@ -84,6 +85,7 @@ int run(int argc, char** argv) {
     add_path(app, common, action);
     add_verify(app, common, action);
     add_export(app, common, action);
+    add_isolated_child(app, action);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

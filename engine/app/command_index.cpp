@@ -26,7 +26,16 @@ void add_metric(CLI::App& command, const Arguments& a) {
 
 void add_running(CLI::App& command, const Arguments& a) {
     command.add_flag("--resume", a->resume, "Continue what an interrupted run finished");
-    command.add_option("--max-memory", a->max_memory, "Bound on the predicted memory, like 8G");
+    command.add_option("--max-memory", a->max_memory,
+                       "Bound on the predicted memory, like 8G; with --isolate on the memory itself");
+    command.add_flag("--isolate", a->isolate,
+                     "Each file in a child process: a crash, a hang or a memory blow-up becomes a recorded "
+                     "failure with a reproducer in INDEX.failures/, and everything else goes on");
+    command
+        .add_option("--hang-timeout", a->hang_timeout,
+                    "With --isolate: seconds without a sign of life after which a child is killed; 0: never")
+        ->capture_default_str()
+        ->check(CLI::NonNegativeNumber);
 }
 
 CLI::App* add_command(CLI::App& parent, const char* name, const char* description, const char* example) {

@@ -5,6 +5,8 @@
 
 #include "engine/app/app.h"
 #include "engine/app/commands.h"
+#include "engine/app/isolation/failure_bundle.h"
+#include "engine/app/isolation/isolated_sweep.h"
 #include "engine/app/records.h"
 #include "engine/app/sweep_run.h"
 
@@ -82,7 +84,8 @@ double probe_seconds(const SweepTask& task) {
 /// What would run: a few solves per item are timed, its memory predicted.
 int dry_run(const SweepConfig& config, const std::vector<std::string>& files, const CommonOptions& common) {
     ProgressLine progress(true);
-    SweepRun run(config, files, nullptr, progress);
+    StoreRecords records(nullptr, false, progress);
+    SweepRun run(config, sweep_sources(files), records, progress);
     const int threads = common.resolved_threads();
     double total = 0.0;
     for (std::size_t f = 0; f < files.size(); ++f) {
@@ -92,7 +95,7 @@ int dry_run(const SweepConfig& config, const std::vector<std::string>& files, co
             const double seconds = each * static_cast<double>(task.vertices.size()) / threads;
             const double megabytes =
                 static_cast<double>(surface.shared_bytes() + threads * surface.worker_bytes()) / 1e6;
-            const std::string name = run.summaries()[task.item].name;
+            const std::string name = run.stage_of(task.item).item;
             total += seconds;
             if (common.json) {
                 print_json({{"item", name},
@@ -110,42 +113,73 @@ int dry_run(const SweepConfig& config, const std::vector<std::string>& files, co
     return run.any_failure() ? kSomeFailed : kDone;
 }
 
-int sweep(const SweepConfig& config, const CommonOptions& common, bool dry) {
-    const std::vector<std::string> files = expand_inputs(config.meshes);
-    if (files.empty()) throw UsageError("no meshes: name them, or give a configuration with [input] meshes");
-    if (dry) return dry_run(config, files, common);
+/// What a run, in this process or in others, leaves behind.
+struct Swept {
+    std::vector<SweepItem> items;
+    bool any_failure = false;
+};
+
+Swept run_here(const SweepConfig& config, const std::vector<SweepSource>& sources, StoreRecords& records,
+               ProgressLine& progress, std::int64_t max_memory) {
     SchedulerOptions options;
-    options.threads = common.resolved_threads();
-    options.max_memory = config.max_memory.empty() ? 0 : parse_bytes(config.max_memory);
+    options.threads = config.threads;
+    options.max_memory = max_memory;
     options.timeout_seconds = config.timeout;
     options.stop = [] { return caught_signal() != 0; };
-    RunStore store(config.output,
-                   make_run_info(to_toml(config, false), to_toml(config, true), options.threads),
-                   config.resume);
-    for (const std::string& note : store.notes()) spdlog::warn("{}", note);
-    catch_signals();
-    ProgressLine progress(common.quiet);
-    SweepRun run(config, files, &store, progress);
+    SweepRun run(config, sources, records, progress);
     run_sweeps(
-        files.size(), [&](std::size_t file) { return run.open(file); }, run, options);
-    progress.clear();
-    if (const int signal = caught_signal(); signal != 0) {
-        spdlog::warn("stopped by a signal; what is finished is in {}.parts: continue with --resume",
-                     config.output);
-        return 128 + signal;
-    }
-    const std::vector<ItemSummary> summaries = run.summaries();
-    store.assemble(run.stored_items(), parse_keep(config.keep));
-    bool failed = run.any_failure();
+        sources.size(), [&](std::size_t source) { return run.open(source); }, run, options);
+    return {run.items(), run.any_failure()};
+}
+
+Swept run_in_children(const SweepConfig& config, const std::vector<SweepSource>& sources,
+                      StoreRecords& records, ProgressLine& progress, std::int64_t max_memory) {
+    IsolatedSweep run(config, sources, records, progress);
+    run_isolated(sources.size(), run,
+                 {config.threads, max_memory, config.hang_timeout, [] { return caught_signal() != 0; }});
+    return {run.items(), run.any_failure()};
+}
+
+int report(const std::vector<ItemSummary>& summaries, bool failed, const std::string& output,
+           const CommonOptions& common) {
     for (const ItemSummary& s : summaries) {
         failed = failed || s.failed > 0;
         if (common.json) print_json(to_json(s));
     }
     if (!common.json) {
         print_table(summaries);
-        fmt::print("wrote {}\n", config.output);
+        fmt::print("wrote {}\n", output);
     }
     return failed ? kSomeFailed : kDone;
+}
+
+int sweep(const SweepConfig& config, const CommonOptions& common, bool dry) {
+    const std::vector<std::string> files = expand_inputs(config.meshes);
+    if (files.empty()) throw UsageError("no meshes: name them, or give a configuration with [input] meshes");
+    if (dry) return dry_run(config, files, common);
+    const std::int64_t max_memory = config.max_memory.empty() ? 0 : parse_bytes(config.max_memory);
+    RunStore store(config.output,
+                   make_run_info(to_toml(config, false), to_toml(config, true), config.threads),
+                   config.resume || config.retry_failed);
+    for (const std::string& note : store.notes()) spdlog::warn("{}", note);
+    catch_signals();
+    ProgressLine progress(common.quiet);
+    StoreRecords records(&store, config.retry_failed, progress);
+    const Swept swept = (config.isolate ? run_in_children : run_here)(config, sweep_sources(files), records,
+                                                                      progress, max_memory);
+    progress.clear();
+    if (const int signal = caught_signal(); signal != 0) {
+        spdlog::warn("stopped by a signal; what is finished is in {}.parts: continue with --resume",
+                     config.output);
+        return 128 + signal;
+    }
+    records.forget_mended();
+    const std::vector<ItemSummary> summaries = summaries_of(swept.items, &store);
+    store.assemble(stored_names(swept.items), parse_keep(config.keep));
+    std::vector<std::string> failed_items;
+    for (const FailureRecord& failure : store.failures()) failed_items.push_back(failure.item);
+    remove_other_bundles(config.output, failed_items);
+    return report(summaries, swept.any_failure, config.output, common);
 }
 
 /// Options given on the command line replace those of the configuration.
@@ -171,7 +205,11 @@ SweepConfig merged(const CLI::App& command, const SweepArguments& a) {
     if (given("--lanes")) c.lanes = v.lanes;
     if (given("--max-memory")) c.max_memory = v.max_memory;
     if (given("--timeout")) c.timeout = v.timeout;
+    if (given("--component")) c.component = v.component;
+    if (given("--isolate")) c.isolate = v.isolate;
+    if (given("--hang-timeout")) c.hang_timeout = v.hang_timeout;
     c.resume = v.resume;
+    c.retry_failed = v.retry_failed;
     return c;
 }
 
@@ -211,13 +249,28 @@ void add_sweep(CLI::App& app, CommonOptions& common, Action& action) {
                         "newton: one at a time");
     command->add_option("--lanes", v.lanes, "Vertices at a time on each thread, 1 to 16; default 16")
         ->check(CLI::Range(1, kLanes));
+    command
+        ->add_option("--component", v.component,
+                     "Only this component of each file (numbers as in item names, from 0)")
+        ->check(CLI::NonNegativeNumber);
     command->add_option("--repair", v.repair, "Changes to make: orient,weld,drop-degenerate");
     command->add_flag("--resume", v.resume, "Continue what an interrupted run finished");
+    command->add_flag("--retry-failed", v.retry_failed,
+                      "Continue as --resume does, or go on from a complete file, and try what failed again");
+    command->add_flag("--isolate,!--no-isolate", v.isolate,
+                      "Each file in a child process: a crash, a hang or a memory blow-up becomes a recorded "
+                      "failure with a reproducer in OUTPUT.failures/, and everything else goes on");
+    command
+        ->add_option("--hang-timeout", v.hang_timeout,
+                     "With --isolate: seconds without a sign of life after which a child is killed; default "
+                     "600, 0: never")
+        ->check(CLI::NonNegativeNumber);
     command->add_flag("--dry-run", a->dry_run, "Only say what would run, with time and memory");
     command->add_option("--shard", v.shard,
                         "i/N: only every N-th of the chosen vertices, from the i-th (i = 0 … N-1)");
     command->add_option("--timeout", v.timeout, "Seconds per solve; 0: none")->check(CLI::NonNegativeNumber);
-    command->add_option("--max-memory", v.max_memory, "Bound on the predicted memory, like 8G");
+    command->add_option("--max-memory", v.max_memory,
+                        "Bound on the predicted memory, like 8G; with --isolate on the memory itself");
     add_common(*command, common);
     command->footer(
         "Example: ricci sweep eight.off --vertices sample:200 --resolutions 5000,input -o eight.h5");

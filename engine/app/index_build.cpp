@@ -9,6 +9,7 @@
 #include <new>
 #include <utility>
 
+#include "engine/app/isolation/isolated_index.h"
 #include "engine/app/shape_record.h"
 #include "engine/app/solve_arguments.h"
 #include "engine/app/sweep_config.h"
@@ -23,12 +24,6 @@ namespace {
 // Memory of a task by the size of its file, generously.
 constexpr std::int64_t kBytesPerFileByte = 100, kBytesAtLeast = 32 << 20;
 
-std::string joined_errors(const LoadedMesh& loaded) {
-    std::string message;
-    for (const Defect& error : loaded.report.errors) message += (message.empty() ? "" : "; ") + error.message;
-    return message;
-}
-
 std::uintmax_t size_of(const std::string& file) {
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(file, error);
@@ -36,6 +31,12 @@ std::uintmax_t size_of(const std::string& file) {
 }
 
 }  // namespace
+
+std::string joined_errors(const LoadedMesh& loaded) {
+    std::string message;
+    for (const Defect& error : loaded.report.errors) message += (message.empty() ? "" : "; ") + error.message;
+    return message;
+}
 
 IndexBuild::IndexBuild(const IndexConfig& config, std::vector<IndexInput> inputs, IndexStore& store)
     : config_(config),
@@ -57,6 +58,7 @@ void IndexBuild::run(const BuildOptions& build) {
     for (Reading& reading : readings_) order.push_back(&reading);
     std::stable_sort(order.begin(), order.end(),
                      [](const Reading* a, const Reading* b) { return a->size > b->size; });
+    if (build.isolate) return run_in_children(order, build, progress);
     options_.flow.parallel = build.threads > 1 && order.size() == 1;
     const auto total = static_cast<std::int64_t>(order.size());
     std::int64_t done = 0;
@@ -87,6 +89,7 @@ void IndexBuild::run(const BuildOptions& build) {
 bool IndexBuild::read(Reading& reading) {
     const std::string& file = inputs_[reading.input].file;
     try {
+        fault_point("load", file);
         std::string bytes = read_text(file);
         reading.hash = checksum_of(std::string_view(bytes));
         reading.reused = store_->known_components(reading.hash) > 0;
@@ -109,6 +112,7 @@ bool IndexBuild::describe(Reading& reading, std::string bytes) {
     const auto components = static_cast<std::int32_t>(loaded.components.size());
     for (std::int32_t c = 0; c < components; ++c) {
         if (!claim(reading.hash, c)) continue;  // a file with the same bytes is under way, or known
+        fault_point("describe", shape_name(inputs_[reading.input].file, c, components));
         ShapeOptions options = options_;
         options.flow.interrupted = interruption(config_.timeout);
         ShapeRecord record =
@@ -144,6 +148,27 @@ void IndexBuild::hand_over(const std::vector<Reading*>& finished) {
         reading->shapes = {};
     }
     if (!shapes.empty()) store_->write_shapes(shapes);
+}
+
+void IndexBuild::run_in_children(const std::vector<Reading*>& order, const BuildOptions& build,
+                                 ProgressLine& progress) {
+    IsolatedIndex work(*this, order, build.output, progress);
+    run_isolated(order.size(), work,
+                 {build.threads, build.max_memory, build.hang_timeout, [] { return caught_signal() != 0; }});
+    work.hand_over();
+    progress.clear();
+}
+
+std::vector<std::string> IndexBuild::failed_bundles() const {
+    std::vector<std::string> names;
+    for (const Reading& reading : readings_) {
+        if (!reading.load_error.empty()) continue;
+        const std::int32_t components = store_->known_components(reading.hash);
+        for (std::int32_t c = 0; c < components; ++c)
+            if (store_->shape(reading.hash, c).status != static_cast<std::uint8_t>(Status::converged))
+                names.push_back(IsolatedIndex::bundle_name(inputs_[reading.input].file, reading.hash, c));
+    }
+    return names;
 }
 
 std::vector<IndexSource> IndexBuild::sources() const {

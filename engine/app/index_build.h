@@ -9,6 +9,7 @@
 
 #include "engine/app/console.h"
 #include "engine/app/index_config.h"
+#include "io/mesh/mesh_file.h"
 #include "io/store/index_store.h"
 
 namespace ricci::app {
@@ -23,6 +24,9 @@ struct BuildOptions {
     int threads = 1;
     std::int64_t max_memory = 0;
     bool quiet = false;
+    bool isolate = false;         // a child process per file
+    double hang_timeout = 600.0;  // seconds without a sign of life, where isolated
+    std::string output;           // of the index; reproducers lie beside it
 };
 
 /// What became of one shape, or of a file that gave none.
@@ -32,6 +36,9 @@ struct BuiltShape {
     bool reused = false;    // known before
     FailureRecord failure;  // status "": described
 };
+
+/// What is wrong with a mesh, in one text.
+std::string joined_errors(const LoadedMesh& loaded);
 
 /// One build under way.
 class IndexBuild {
@@ -47,8 +54,12 @@ class IndexBuild {
     [[nodiscard]] std::vector<FailureRecord> load_failures() const;
     /// Shapes of the files that were read, in their order.
     [[nodiscard]] std::vector<BuiltShape> shapes() const;
+    /// Names of the reproducers of shapes that have failed.
+    [[nodiscard]] std::vector<std::string> failed_bundles() const;
 
   private:
+    friend class IsolatedIndex;
+
     /// What is known of one input that is read.
     struct Reading {
         std::size_t input = 0;
@@ -59,6 +70,8 @@ class IndexBuild {
         std::vector<ShapeRecord> shapes;  // described, until handed over
     };
 
+    void run_in_children(const std::vector<Reading*>& order, const BuildOptions& build,
+                         ProgressLine& progress);
     bool read(Reading& reading);
     bool describe(Reading& reading, std::string bytes);
     [[nodiscard]] bool claim(std::uint64_t hash, std::int32_t component);

@@ -15,7 +15,8 @@ struct IndexArguments {
     std::vector<std::string> paths;  // files, folders, globs
     IndexConfig config;
     std::string max_memory, metric = "spectrum", linkage = "average", type, output, heatmap, dendrogram;
-    bool resume = false, others = false;
+    bool resume = false, others = false, isolate = false;
+    double hang_timeout = 600.0;
     std::int64_t neighbours = 5, clusters = 0;
 };
 

@@ -48,6 +48,21 @@ void add_index_options(CLI::App& command, IndexConfig& c) {
     command.add_option("--timeout", c.timeout, "Seconds per shape; 0: none")->check(CLI::NonNegativeNumber);
 }
 
+std::vector<std::string> index_arguments(const IndexConfig& c) {
+    std::vector<std::string> words{fmt::format("--max-length={}", c.max_length),
+                                   fmt::format("--count={}", c.count),
+                                   fmt::format("--fingerprint={}", c.fingerprint),
+                                   fmt::format("--resolutions={}", fmt::join(c.resolutions, ",")),
+                                   fmt::format("--scheme={}", c.scheme),
+                                   fmt::format("--delaunay={}", c.delaunay),
+                                   fmt::format("--tolerance={}", c.tolerance),
+                                   fmt::format("--max-iterations={}", c.max_iterations),
+                                   fmt::format("--timeout={}", c.timeout)};
+    if (!c.repair.empty()) words.push_back(fmt::format("--repair={}", c.repair));
+    if (!c.coordinates) words.emplace_back("--no-coordinates");
+    return words;
+}
+
 std::string to_toml(const IndexConfig& c) {
     toml::array resolutions;
     for (const std::string& r : c.resolutions) resolutions.push_back(r);

@@ -30,6 +30,9 @@ struct IndexConfig {
 /// Adds the options to a subcommand.
 void add_index_options(CLI::App& command, IndexConfig& config);
 
+/// The options as they would be typed.
+std::vector<std::string> index_arguments(const IndexConfig& config);
+
 /// All of it as TOML, and back. Reading throws UsageError for text that to_toml() did not make.
 std::string to_toml(const IndexConfig& config);
 IndexConfig index_config_from_toml(const std::string& text);

@@ -11,6 +11,7 @@
 #include "engine/app/app.h"
 #include "engine/app/index_build.h"
 #include "engine/app/index_commands.h"
+#include "engine/app/isolation/failure_bundle.h"
 #include "engine/app/records.h"
 
 namespace ricci::app {
@@ -79,6 +80,9 @@ int run_build(const IndexArguments& a, const CommonOptions& common, const IndexC
     options.threads = common.resolved_threads();
     options.max_memory = a.max_memory.empty() ? 0 : parse_bytes(a.max_memory);
     options.quiet = common.quiet;
+    options.isolate = a.isolate;
+    options.hang_timeout = a.hang_timeout;
+    options.output = a.index;
     const std::string toml = to_toml(config);
     IndexStore store(a.index, make_run_info(toml, toml, options.threads), kDescriptorVersion, a.resume);
     for (const std::string& note : store.notes()) spdlog::warn("{}", note);
@@ -93,6 +97,7 @@ int run_build(const IndexArguments& a, const CommonOptions& common, const IndexC
     failures.insert(failures.end(), unreadable.begin(), unreadable.end());
     const std::vector<BuiltShape> shapes = build.shapes();
     store.assemble(build.sources(), failures);
+    remove_other_bundles(a.index, build.failed_bundles());
     return report(shapes, a.index, std::chrono::duration<double>(Clock::now() - start).count(), common);
 }
 

@@ -11,6 +11,7 @@
 #include "engine/app/console.h"
 #include "engine/app/solve_options.h"
 #include "engine/sweep/scheduler.h"
+#include "io/store/durable.h"
 
 namespace ricci::app {
 namespace {
@@ -97,9 +98,13 @@ T whole_number(const std::string& text, const std::string& what) {
 
 SweepConfig read_sweep_config(const std::string& path) {
     if (!std::filesystem::exists(path)) throw FileError(fmt::format("{}: no such configuration file", path));
+    return parse_sweep_config(read_text(path), path);
+}
+
+SweepConfig parse_sweep_config(const std::string& text, const std::string& path) {
     toml::table root;
     try {
-        root = toml::parse_file(path);
+        root = toml::parse(text, path);
     } catch (const toml::parse_error& e) {
         throw UsageError(fmt::format("{}:{}: {}", path, e.source().begin.line, std::string(e.description())));
     }
@@ -112,6 +117,7 @@ SweepConfig read_sweep_config(const std::string& path) {
     TableReader input(path, root, "input");
     input.list("meshes", c.meshes);
     input("repair", c.repair);
+    input("component", c.component);
     input.reject_the_rest();
     TableReader solve(path, root, "solve");
     solve("scheme", c.scheme);
@@ -135,6 +141,8 @@ SweepConfig read_sweep_config(const std::string& path) {
     run("lanes", c.lanes);
     run.text("max_memory", c.max_memory);
     run("timeout", c.timeout);
+    run("isolate", c.isolate);
+    run("hang_timeout", c.hang_timeout);
     run.reject_the_rest();
     return c;
 }
@@ -143,8 +151,10 @@ std::string to_toml(const SweepConfig& c, bool only_what_decides_results) {
     toml::array meshes, resolutions;
     for (const std::string& m : c.meshes) meshes.push_back(m);
     for (const std::string& r : c.resolutions) resolutions.push_back(r);
+    toml::table input{{"meshes", meshes}, {"repair", c.repair}};
+    if (c.component >= 0) input.insert("component", c.component);
     toml::table root{
-        {"input", toml::table{{"meshes", meshes}, {"repair", c.repair}}},
+        {"input", std::move(input)},
         {"solve", toml::table{{"scheme", c.scheme},
                               {"boundary", c.boundary},
                               {"cone_curvature", c.cone_curvature},
@@ -161,6 +171,8 @@ std::string to_toml(const SweepConfig& c, bool only_what_decides_results) {
         run.insert("threads", c.threads);
         run.insert("lanes", c.lanes);
         run.insert("max_memory", c.max_memory);
+        run.insert("isolate", c.isolate);
+        run.insert("hang_timeout", c.hang_timeout);
     }
     root.insert("run", run);
     std::ostringstream text;

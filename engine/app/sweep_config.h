@@ -14,6 +14,7 @@ namespace ricci::app {
 struct SweepConfig {
     std::vector<std::string> meshes;  // files, folders, globs
     std::string repair;
+    Index component = -1;  // the only one of each file to sweep; -1: all
     std::string scheme = "vertex-scaling", boundary = "geodesic", cone_curvature, delaunay = "isometric";
     double tolerance = 1e-10;
     std::int32_t max_iterations = 0;
@@ -28,12 +29,16 @@ struct SweepConfig {
     int lanes = kLanes;
     std::string max_memory;
     double timeout = 0.0;
-    bool resume = false;
+    bool isolate = false;         // a child process per file
+    double hang_timeout = 600.0;  // seconds without a sign of life, where isolated
+    bool resume = false, retry_failed = false;
 };
 
 /// Reads a configuration. Throws FileError; UsageError naming file, line and key for anything unknown or of
 /// the wrong type.
 SweepConfig read_sweep_config(const std::string& path);
+/// The same from its text; `path` is for messages.
+SweepConfig parse_sweep_config(const std::string& text, const std::string& path);
 
 /// The resolved configuration as TOML: what decides the results, and how it was run.
 std::string to_toml(const SweepConfig& config, bool only_what_decides_results);

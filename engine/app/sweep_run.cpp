@@ -4,51 +4,44 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <filesystem>
+#include <exception>
+#include <new>
 
 #include "engine/app/records.h"
-#include "engine/remesh/resample.h"
+#include "io/store/fault_point.h"
 
 namespace ricci::app {
 namespace {
 
-constexpr const char* kSweepStage = "sweep";
-
 /// The candidates of a block for what the assembled file keeps: its best and worst, or more where asked.
 std::vector<KeptFactor> candidates_of(std::vector<SweepSolve>& solves, const KeepPolicy& keep) {
-    std::vector<SweepSolve*> converged;
-    for (SweepSolve& s : solves)
-        if (s.status == Status::converged) converged.push_back(&s);
-    std::sort(converged.begin(), converged.end(), [](const SweepSolve* a, const SweepSolve* b) {
-        return a->area_distortion != b->area_distortion ? a->area_distortion < b->area_distortion
-                                                        : a->vertex < b->vertex;
-    });
-    const std::size_t count = converged.size();
-    // Best and worst do not count among the `count` others, so a block offers two more.
-    const std::size_t others =
-        keep.count > 0 ? static_cast<std::size_t>(keep.count) + 2 : (keep.best ? 1 : 0);
-    const std::size_t first = keep.count < 0 ? count : std::min(count, others);
     std::vector<KeptFactor> kept;
-    // The worst: largest distortion, ties to the lowest vertex.
-    const auto worst = std::max_element(
-        converged.begin(), converged.end(),
-        [](const SweepSolve* a, const SweepSolve* b) { return a->area_distortion < b->area_distortion; });
-    for (std::size_t k = 0; k < count; ++k) {
-        const bool wanted = k < first || (keep.worst && converged[k] == *worst);
-        if (wanted)
-            kept.push_back({converged[k]->vertex, converged[k]->area_distortion,
-                            std::move(converged[k]->conformal_factor)});
-    }
+    for (SweepSolve& s : solves)
+        if (s.status == Status::converged)
+            kept.push_back({s.vertex, s.area_distortion, std::move(s.conformal_factor)});
+    drop_needless(kept, keep);
     return kept;
+}
+
+/// The exception being handled as a status: what concerns one item ends that item.
+Status status_of(const std::exception& e) {
+    if (dynamic_cast<const std::bad_alloc*>(&e) != nullptr) return Status::out_of_memory;
+    const bool input = dynamic_cast<const FileError*>(&e) != nullptr ||
+                       dynamic_cast<const std::invalid_argument*>(&e) != nullptr;
+    return input ? Status::invalid_input : Status::internal_error;
+}
+
+std::string message_of(const std::exception& e) {
+    return dynamic_cast<const std::bad_alloc*>(&e) != nullptr ? "memory ran out" : e.what();
 }
 
 }  // namespace
 
-SweepRun::SweepRun(const SweepConfig& config, std::vector<std::string> files, RunStore* store,
+SweepRun::SweepRun(const SweepConfig& config, std::vector<SweepSource> sources, SweepRecords& records,
                    ProgressLine& progress)
     : config_(config),
-      files_(std::move(files)),
-      store_(store),
+      sources_(std::move(sources)),
+      records_(&records),
       progress_(&progress),
       options_(sweep_options(config)),
       choice_(parse_vertices(config.vertices)),
@@ -57,178 +50,181 @@ SweepRun::SweepRun(const SweepConfig& config, std::vector<std::string> files, Ru
       keep_(parse_keep(config.keep)),
       repair_(parse_repair(config.repair)) {}
 
-std::string SweepRun::unique_name(const std::string& name) {
-    const int uses = ++name_uses_[name];
-    return uses == 1 ? name : fmt::format("{}~{}", name, uses);
-}
-
-std::size_t SweepRun::add_item(Item item) {
+std::size_t SweepRun::add_item(const SweepStage& stage, bool stored) {
     const std::lock_guard lock(mutex_);
-    items_.push_back(std::move(item));
+    items_.emplace_back();
+    items_.back().name = stage.item;
+    items_.back().stored = stored;
+    stages_.push_back(stage);
     return items_.size() - 1;
 }
 
-void SweepRun::record_failure(std::size_t item, const std::string& stage, Status status,
-                              const std::string& message) {
-    std::string name;
-    {
-        const std::lock_guard lock(mutex_);
-        items_[item].status = status;
-        items_[item].message = message;
-        name = items_[item].name;
-        any_failure_ = true;
-    }
-    progress_->clear();
-    spdlog::error("{}: {}: {}", name, name_of(status), message);
-    const FailureRecord failure{name, stage, std::string(name_of(status)), message};
-    if (store_ != nullptr && !store_->has_failure(failure)) store_->write_failure(failure);
+/// A failure that is on record already.
+void SweepRun::take_over(std::size_t item, const FailureRecord& failure) {
+    const auto name = std::find(kStatusNames.begin(), kStatusNames.end(), failure.status);
+    const std::lock_guard lock(mutex_);
+    items_[item].status = name == kStatusNames.end() ? Status::internal_error
+                                                     : static_cast<Status>(name - kStatusNames.begin());
+    items_[item].message = failure.message;
+    any_failure_ = true;
+}
+
+void SweepRun::record_failure(std::size_t item, Status status, const std::string& message) {
+    const SweepStage stage = stage_of(item);
+    const FailureRecord failure{stage.item, stage.stage, std::string(name_of(status)), message};
+    take_over(item, failure);
+    records_->failed(failure);
 }
 
 std::vector<SweepTask> SweepRun::open(std::size_t number) {
-    const std::string& file = files_[number];
-    std::vector<SweepTask> tasks;
-    const std::string fallback = std::filesystem::path(file).stem().string();
+    const SweepSource& source = sources_[number];
+    const SweepStage stage{source.name, kLoadStage};
+    if (const auto known = records_->begin(stage)) {
+        take_over(add_item(stage, false), *known);
+        return {};
+    }
     LoadedMesh loaded;
     try {
-        loaded = load_mesh(file, repair_);
-    } catch (const FileError& e) {
-        record_failure(add_item({unique_name(fallback), false, 0, {}, {}, 0.0}), "load",
-                       Status::invalid_input, e.what());
-        return tasks;
+        fault_point("load", source.name);
+        loaded = load_mesh(source.file, repair_);
+    } catch (const std::exception& e) {
+        record_failure(add_item(stage, false), status_of(e), message_of(e));
+        return {};
     }
-    for (const Defect& note : loaded.report.notes) spdlog::debug("{}: {}", file, note.message);
-    if (!loaded.report.errors.empty()) {
-        std::string message;
-        for (const Defect& error : loaded.report.errors)
-            message += (message.empty() ? "" : "; ") + error.message;
-        record_failure(add_item({unique_name(loaded.stem), false, 0, {}, {}, 0.0}), "load",
-                       Status::invalid_input, message);
-        return tasks;
+    for (const Defect& note : loaded.report.notes) spdlog::debug("{}: {}", source.file, note.message);
+    std::string complaint;
+    for (const Defect& error : loaded.report.errors)
+        complaint += (complaint.empty() ? "" : "; ") + error.message;
+    const auto components = static_cast<Index>(loaded.components.size());
+    if (complaint.empty() && config_.component >= components)
+        complaint = fmt::format("there is no component {}: it has {}", config_.component, components);
+    if (!complaint.empty()) {
+        record_failure(add_item(stage, false), Status::invalid_input, complaint);
+        return {};
     }
-    for (std::size_t c = 0; c < loaded.components.size(); ++c) {
-        const std::string stem =
-            loaded.components.size() > 1 ? fmt::format("{}.c{}", loaded.stem, c) : loaded.stem;
+    records_->passed(stage);
+    std::vector<SweepTask> tasks;
+    for (Index c = 0; c < components; ++c)
         for (const Index resolution : resolutions_)
-            if (auto task = open_surface(file, stem, loaded.content_hash, loaded.components[c], resolution))
-                tasks.push_back(std::move(*task));
-    }
+            if (config_.component < 0 || config_.component == c)
+                if (auto task = open_surface(source, loaded, c, resolution))
+                    tasks.push_back(std::move(*task));
     return tasks;
 }
 
-std::optional<SweepTask> SweepRun::open_surface(const std::string& file, const std::string& stem,
-                                                std::uint64_t hash, const SurfaceMesh& mesh,
-                                                Index resolution) {
-    ResampledMesh resampled;
-    if (resolution > 0) {
-        try {
-            resampled = resample(mesh, resolution);
-        } catch (const std::invalid_argument& e) {
-            record_failure(add_item({unique_name(item_name(stem, resolution)), false, 0, {}, {}, 0.0}),
-                           "resample", Status::invalid_input, e.what());
-            return std::nullopt;
-        }
-        for (Index& v : resampled.source_vertex) v = mesh.input_vertex[static_cast<std::size_t>(v)];
-    } else {
-        resampled.mesh = mesh;
-        resampled.source_vertex = mesh.input_vertex;
-    }
-    const std::string name = unique_name(item_name(stem, resampled.mesh.connectivity.face_count()));
-    if (store_ != nullptr && !store_->has_item(name))
-        store_->write_item(make_item(name, file, hash, resampled.mesh, resampled.source_vertex));
-    const std::size_t item = add_item({name, true, 0, {}, {}, 0.0});
-    auto surface = std::make_shared<SweepSurface>(std::move(resampled.mesh), options_);
-    if (!surface->inadmissible().empty()) {
-        record_failure(item, kSweepStage, Status::inadmissible_target, surface->inadmissible());
+std::optional<ResampledMesh> SweepRun::resampled(const SurfaceMesh& mesh, const SweepStage& stage) {
+    if (stage.resolution == 0) return ResampledMesh{mesh, mesh.input_vertex};
+    if (const auto known = records_->begin(stage)) {
+        take_over(add_item(stage, false), *known);
         return std::nullopt;
     }
+    ResampledMesh result;
+    try {
+        fault_point("resample", stage.item);
+        result = resample(mesh, stage.resolution);
+    } catch (const std::exception& e) {
+        record_failure(add_item(stage, false), status_of(e), message_of(e));
+        return std::nullopt;
+    }
+    for (Index& v : result.source_vertex) v = mesh.input_vertex[static_cast<std::size_t>(v)];
+    records_->passed(stage);
+    return result;
+}
+
+std::optional<SweepTask> SweepRun::open_surface(const SweepSource& source, const LoadedMesh& loaded,
+                                                std::size_t component, Index resolution) {
+    const std::string stem =
+        loaded.components.size() > 1 ? fmt::format("{}.c{}", loaded.stem, component) : loaded.stem;
+    SweepStage stage{item_name(stem, resolution) + source.suffix(), kResampleStage,
+                     static_cast<Index>(component), resolution};
+    auto found = resampled(loaded.components[component], stage);
+    if (!found) return std::nullopt;
+    SurfaceMesh& mesh = found->mesh;
+    const Admission admission =
+        records_->admit(make_item(item_name(stem, mesh.connectivity.face_count()), source.file,
+                                  loaded.content_hash, mesh, found->source_vertex),
+                        stage);
+    stage.item = admission.name;
+    stage.stage = kSweepStage;
+    const std::size_t item = add_item(stage, true);
+    if (const auto known = records_->begin(stage)) {
+        take_over(item, *known);
+        return std::nullopt;
+    }
+    std::shared_ptr<SweepSurface> surface;
     std::vector<Index> chosen;
     try {
-        chosen = choose_vertices(choice_, surface->candidates());
-    } catch (const std::invalid_argument& e) {
-        record_failure(item, kSweepStage, Status::invalid_input, e.what());
+        fault_point("prepare", admission.name);
+        surface = std::make_shared<SweepSurface>(std::move(mesh), options_);
+        if (surface->inadmissible().empty()) chosen = choose_vertices(choice_, surface->candidates());
+    } catch (const std::exception& e) {
+        record_failure(item, status_of(e), message_of(e));
         return std::nullopt;
     }
-    std::vector<Index> own;
+    if (!surface->inadmissible().empty()) {
+        record_failure(item, Status::inadmissible_target, surface->inadmissible());
+        return std::nullopt;
+    }
+    std::vector<Index> own, left;
     for (std::size_t k = shard_.index; k < chosen.size(); k += shard_.count) own.push_back(chosen[k]);
+    std::set_difference(own.begin(), own.end(), admission.finished.begin(), admission.finished.end(),
+                        std::back_inserter(left));
+    records_->chosen(admission.name, own.size(), left.size());
     {
         const std::lock_guard lock(mutex_);
         items_[item].vertices = own.size();
     }
-    return SweepTask{item, std::move(surface), to_solve(name, std::move(own))};
+    return SweepTask{item, std::move(surface), std::move(left)};
 }
 
-std::vector<Index> SweepRun::to_solve(const std::string& item, std::vector<Index> chosen) const {
-    if (store_ == nullptr) return chosen;
-    const std::vector<Index> finished = store_->finished_vertices(item);
-    std::vector<Index> left;
-    std::set_difference(chosen.begin(), chosen.end(), finished.begin(), finished.end(),
-                        std::back_inserter(left));
-    return left;
+SweepStage SweepRun::stage_of(std::size_t item) const {
+    const std::lock_guard lock(mutex_);
+    return stages_[item];
+}
+
+void SweepRun::solve_started(std::size_t item, Index vertex) {
+    const std::string name = stage_of(item).item;
+    records_->started(name, vertex);
+    fault_point("solve", name);
 }
 
 void SweepRun::block_finished(std::size_t item, std::vector<SweepSolve> solves) {
-    std::string name;
-    {
-        const std::lock_guard lock(mutex_);
-        name = items_[item].name;
-        for (const SweepSolve& s : solves) any_failure_ = any_failure_ || s.status != Status::converged;
-    }
     SweepBlock block;
-    block.item = name;
+    block.item = stage_of(item).item;
     for (const SweepSolve& s : solves) {
         block.rows.push_back(make_row(s));
         if (s.status == Status::converged) continue;
-        progress_->clear();
-        spdlog::error("{} vertex {}: {}: {}", name, s.vertex, name_of(s.status), s.message);
-        if (store_ != nullptr)
-            store_->write_failure({name, fmt::format("{} vertex {}", kSweepStage, s.vertex),
-                                   std::string(name_of(s.status)), s.message});
+        {
+            const std::lock_guard lock(mutex_);
+            any_failure_ = true;
+        }
+        records_->failed({block.item, vertex_stage(s.vertex), std::string(name_of(s.status)), s.message});
     }
     block.kept = candidates_of(solves, keep_);
-    if (store_ != nullptr) store_->write_sweep_block(block);
+    records_->finished(block);
 }
 
 void SweepRun::item_finished(std::size_t item, double seconds) {
-    const std::lock_guard lock(mutex_);
-    items_[item].seconds = seconds;
+    const SweepStage stage = stage_of(item);
+    {
+        const std::lock_guard lock(mutex_);
+        items_[item].seconds = seconds;
+    }
+    records_->passed(stage);
+    records_->item_finished(stage.item, seconds);
 }
 
 void SweepRun::item_failed(std::size_t item, Status status, const std::string& message) {
-    record_failure(item, kSweepStage, status, message);
+    record_failure(item, status, message);
 }
 
 void SweepRun::progress(const SchedulerProgress& progress) {
     progress_->show(progress);
 }
 
-std::vector<std::string> SweepRun::stored_items() const {
+std::vector<SweepItem> SweepRun::items() const {
     const std::lock_guard lock(mutex_);
-    std::vector<std::string> names;
-    for (const Item& item : items_)
-        if (item.stored) names.push_back(item.name);
-    return names;
-}
-
-std::vector<ItemSummary> SweepRun::summaries() const {
-    const std::lock_guard lock(mutex_);
-    std::vector<ItemSummary> result;
-    for (const Item& item : items_) {
-        ItemSummary summary{item.name, item.status, item.message, item.vertices, 0, 0, {}, {}, item.seconds};
-        if (item.stored && store_ != nullptr) {
-            for (const SweepRow& row : store_->finished_rows(item.name)) {
-                if (row.status != static_cast<std::uint8_t>(Status::converged)) {
-                    ++summary.failed;
-                    continue;
-                }
-                ++summary.solved;
-                if (!summary.best || row.area_distortion < summary.best->area_distortion) summary.best = row;
-                if (!summary.worst || row.area_distortion > summary.worst->area_distortion)
-                    summary.worst = row;
-            }
-        }
-        result.push_back(std::move(summary));
-    }
-    return result;
+    return items_;
 }
 
 }  // namespace ricci::app

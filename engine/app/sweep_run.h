@@ -1,71 +1,53 @@
 // A sweep under way: opens inputs, feeds the scheduler, writes to the store.
 #pragma once
 
-#include <map>
 #include <mutex>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "engine/app/console.h"
 #include "engine/app/sweep_config.h"
+#include "engine/app/sweep_items.h"
+#include "engine/app/sweep_records.h"
+#include "engine/remesh/resample.h"
 #include "engine/sweep/scheduler.h"
-#include "io/store/run_store.h"
 
 namespace ricci::app {
 
-/// One line of the table and of the JSON output.
-struct ItemSummary {
-    std::string name;
-    Status status = Status::converged;  // of the item as a whole
-    std::string message;
-    std::size_t vertices = 0, solved = 0, failed = 0;  // of those asked for
-    std::optional<SweepRow> best, worst;
-    double seconds = 0.0;
-};
-
 class SweepRun final : public SweepSink {
   public:
-    /// `store` may be null (dry run). Throws UsageError.
-    SweepRun(const SweepConfig& config, std::vector<std::string> files, RunStore* store,
+    /// Throws UsageError.
+    SweepRun(const SweepConfig& config, std::vector<SweepSource> sources, SweepRecords& records,
              ProgressLine& progress);
 
     /// Opens the i-th file: one task per component and resolution. Records what is wrong with it instead of
     /// throwing; FileError of the store comes through.
-    std::vector<SweepTask> open(std::size_t file);
+    std::vector<SweepTask> open(std::size_t source);
 
+    void solve_started(std::size_t item, Index vertex) override;
     void block_finished(std::size_t item, std::vector<SweepSolve> solves) override;
     void item_finished(std::size_t item, double seconds) override;
     void item_failed(std::size_t item, Status status, const std::string& message) override;
     void progress(const SchedulerProgress& progress) override;
 
-    /// Names of all items with a mesh in the store, in input order.
-    [[nodiscard]] std::vector<std::string> stored_items() const;
-    /// Summaries of all items (and of files that gave none), in input order, rows read from the store.
-    [[nodiscard]] std::vector<ItemSummary> summaries() const;
+    /// Items, and files that gave none, in input order.
+    [[nodiscard]] std::vector<SweepItem> items() const;
+    /// The stage of an item's solves.
+    [[nodiscard]] SweepStage stage_of(std::size_t item) const;
     [[nodiscard]] bool any_failure() const { return any_failure_; }
 
   private:
-    struct Item {
-        std::string name;
-        bool stored = false;
-        std::size_t vertices = 0;  // asked for
-        Status status = Status::converged;
-        std::string message;
-        double seconds = 0.0;
-    };
-
-    std::optional<SweepTask> open_surface(const std::string& file, const std::string& stem,
-                                          std::uint64_t hash, const SurfaceMesh& mesh, Index resolution);
-    std::size_t add_item(Item item);
-    std::string unique_name(const std::string& name);
-    void record_failure(std::size_t item, const std::string& stage, Status status,
-                        const std::string& message);
-    [[nodiscard]] std::vector<Index> to_solve(const std::string& item, std::vector<Index> chosen) const;
+    std::optional<SweepTask> open_surface(const SweepSource& source, const LoadedMesh& loaded,
+                                          std::size_t component, Index resolution);
+    std::optional<ResampledMesh> resampled(const SurfaceMesh& mesh, const SweepStage& stage);
+    std::size_t add_item(const SweepStage& stage, bool stored);
+    void record_failure(std::size_t item, Status status, const std::string& message);
+    void take_over(std::size_t item, const FailureRecord& failure);
+    std::vector<SweepTask> failed_to_open(const SweepStage& stage, const std::string& message);
 
     SweepConfig config_;
-    std::vector<std::string> files_;
-    RunStore* store_;
+    std::vector<SweepSource> sources_;
+    SweepRecords* records_;
     ProgressLine* progress_;
     SweepOptions options_;
     VertexChoice choice_;
@@ -75,8 +57,8 @@ class SweepRun final : public SweepSink {
     RepairOptions repair_;
 
     mutable std::mutex mutex_;
-    std::vector<Item> items_;
-    std::map<std::string, int> name_uses_;
+    std::vector<SweepItem> items_;
+    std::vector<SweepStage> stages_;  // of the items
     bool any_failure_ = false;
 };
 

@@ -54,12 +54,10 @@ struct ProgramResult {
     std::string out, err;
 };
 
-/// Runs ricci with `arguments`; with `kill_after` (milliseconds) sends `signal` then.
-inline ProgramResult run_ricci(const TemporaryFolder& folder, const std::vector<std::string>& arguments,
-                               int kill_after = -1, int signal = SIGKILL) {
+/// Runs a program; with `kill_after` (milliseconds) sends `signal` then.
+inline ProgramResult run_program(const TemporaryFolder& folder, std::vector<std::string> words,
+                                 int kill_after = -1, int signal = SIGKILL) {
     const std::string out = folder / "stdout.txt", err = folder / "stderr.txt";
-    std::vector<std::string> words{RICCI_PROGRAM};
-    words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
@@ -83,6 +81,14 @@ inline ProgramResult run_ricci(const TemporaryFolder& folder, const std::vector<
     result.out = read_text(out);
     result.err = read_text(err);
     return result;
+}
+
+/// Runs ricci with `arguments`.
+inline ProgramResult run_ricci(const TemporaryFolder& folder, const std::vector<std::string>& arguments,
+                               int kill_after = -1, int signal = SIGKILL) {
+    std::vector<std::string> words{RICCI_PROGRAM};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    return run_program(folder, std::move(words), kill_after, signal);
 }
 
 /// Writes a generated surface of about so many faces into the folder; the path, empty where that failed.

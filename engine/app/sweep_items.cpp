@@ -1,0 +1,60 @@
+#include "engine/app/sweep_items.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+
+namespace ricci::app {
+
+std::string stem_of(const std::string& file) {
+    std::filesystem::path name = std::filesystem::path(file).filename();
+    const std::string extension = name.extension().string();
+    if (extension == ".gz" || extension == ".GZ") name = name.stem();
+    return name.stem().string();
+}
+
+std::string SweepSource::suffix() const {
+    return name.substr(stem_of(file).size());
+}
+
+std::vector<SweepSource> sweep_sources(const std::vector<std::string>& files) {
+    std::map<std::string, int> uses;
+    std::vector<SweepSource> sources;
+    for (const std::string& file : files) {
+        const std::string stem = stem_of(file);
+        const int use = ++uses[stem];
+        sources.push_back({file, use == 1 ? stem : fmt::format("{}~{}", stem, use)});
+    }
+    return sources;
+}
+
+std::vector<ItemSummary> summaries_of(const std::vector<SweepItem>& items, const RunStore* store) {
+    std::vector<ItemSummary> result;
+    for (const SweepItem& item : items) {
+        ItemSummary summary{item.name, item.status, item.message, item.vertices, 0, 0, {}, {}, item.seconds};
+        if (item.stored && store != nullptr) {
+            for (const SweepRow& row : store->finished_rows(item.name)) {
+                if (row.status != static_cast<std::uint8_t>(Status::converged)) {
+                    ++summary.failed;
+                    continue;
+                }
+                ++summary.solved;
+                if (!summary.best || row.area_distortion < summary.best->area_distortion) summary.best = row;
+                if (!summary.worst || row.area_distortion > summary.worst->area_distortion)
+                    summary.worst = row;
+            }
+        }
+        result.push_back(std::move(summary));
+    }
+    return result;
+}
+
+std::vector<std::string> stored_names(const std::vector<SweepItem>& items) {
+    std::vector<std::string> names;
+    for (const SweepItem& item : items)
+        if (item.stored) names.push_back(item.name);
+    return names;
+}
+
+}  // namespace ricci::app

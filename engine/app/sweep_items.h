@@ -1,0 +1,52 @@
+// What a sweep knows of its items while it runs, and what it says of them at the end.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/flow/status.h"
+#include "io/store/run_store.h"
+
+namespace ricci::app {
+
+/// A mesh file of a sweep. Its name is the file's stem, with ~2, ~3 for further files of the same stem, in
+/// the order of the input: failures of the file as a whole go by it.
+struct SweepSource {
+    std::string file, name;
+
+    /// "", "~2", ...
+    [[nodiscard]] std::string suffix() const;
+};
+std::vector<SweepSource> sweep_sources(const std::vector<std::string>& files);
+
+/// File name without folder, .gz and the format's suffix.
+std::string stem_of(const std::string& file);
+
+/// An item, or a file that gave none.
+struct SweepItem {
+    std::string name;
+    bool stored = false;
+    std::size_t vertices = 0;  // asked for
+    Status status = Status::converged;
+    std::string message;
+    double seconds = 0.0;
+};
+
+/// One line of the table and of the JSON output.
+struct ItemSummary {
+    std::string name;
+    Status status = Status::converged;  // of the item as a whole
+    std::string message;
+    std::size_t vertices = 0, solved = 0, failed = 0;  // of those asked for
+    std::optional<SweepRow> best, worst;
+    double seconds = 0.0;
+};
+
+/// Rows are read from the store, which may be null.
+std::vector<ItemSummary> summaries_of(const std::vector<SweepItem>& items, const RunStore* store);
+/// Names of the items with a mesh in the store.
+std::vector<std::string> stored_names(const std::vector<SweepItem>& items);
+
+}  // namespace ricci::app
