@@ -157,7 +157,7 @@ class Protocol:
         name = self.random.choice(FAULTS[kind])
         call = f"{kind}:{self.random.randint(1, job.counts[kind])}{self.random.choice(['', '+'])}:{getattr(errno, name)}"
         status, error = self.run(job, call=call)
-        for said in (TEXT[name], "out.h5"):
+        for said in (TEXT[name], self.place.name):  # the run's folder, or a file within
             if status == 3 and said not in error:
                 self.problem(f"{job.name}, {call}: exit 3, but the message does not say '{said}': {error[-300:]}")
         if status not in (3, job.status):

@@ -93,6 +93,10 @@ void StoreRecords::finished(const SweepBlock& block) {
             store_->retract_failure({block.item, vertex_stage(row.vertex), "", ""});
 }
 
+void StoreRecords::item_finished(const std::string& item, double /*seconds*/) {
+    if (store_ != nullptr) store_->release(item);
+}
+
 void StoreRecords::failed(const FailureRecord& failure) {
     progress_->clear();
     spdlog::error("{} ({}): {}: {}", failure.item, failure.stage, failure.status, failure.message);

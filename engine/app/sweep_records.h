@@ -71,7 +71,7 @@ class StoreRecords final : public SweepRecords {
     void chosen(const std::string& /*item*/, std::size_t /*vertices*/, std::size_t /*left*/) override {}
     void started(const std::string& /*item*/, Index /*vertex*/) override {}
     void finished(const SweepBlock& block) override;
-    void item_finished(const std::string& /*item*/, double /*seconds*/) override {}
+    void item_finished(const std::string& item, double seconds) override;
     void failed(const FailureRecord& failure) override;
 
     /// What is finished of an item that has been admitted.

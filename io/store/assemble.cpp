@@ -152,8 +152,11 @@ void write_result_file(const std::string& path, const RunInfo& info, const RunSt
     hdf5::write_file(path, [&](hdf5::OutputFile& file) {
         schema::write_run_info(file.root(), info, schema::now());
         const Handle group = hdf5::create_group(file.root(), "items");
-        for (const std::string& name : items)
-            write_item(group, file, name, state.items.at(name), keep, info.status);
+        for (const std::string& name : items) {
+            ItemState item = state.items.at(name);
+            recall_rows(item, name, info.status);
+            write_item(group, file, name, item, keep, info.status);
+        }
         schema::write_failures(file.root(), ordered_failures(state, items));
         file.flush();
         hdf5::write_attribute<std::int32_t>(file.root(), "complete", 1);

@@ -22,9 +22,18 @@ void read_sweep(hid_t group, const std::string& item, const std::string& recorde
     for (const char* name : {"best", "worst"})
         if (const auto vertex = schema::read_extreme_vertex(sweep, name))
             add(*vertex, path + name + "/conformal_factor", std::nullopt);
+    state.sweep_files.push_back(recorded);
     if (!hdf5::has_link(sweep, "kept")) return;
     const auto kept = hdf5::read_array<Index>(hdf5::open_group(sweep, "kept"), "vertex", std::nullopt);
     for (std::size_t i = 0; i < kept.size(); ++i) add(kept[i], path + "kept/conformal_factor", i);
+}
+
+void merge_rows(ItemState& known, ItemState& part) {
+    for (const auto& [vertex, row] : part.rows) {
+        const auto [there, added] = known.rows.emplace(vertex, row);
+        if (!added && replaceable(there->second)) there->second = row;
+    }
+    known.factors.merge(part.factors);
 }
 
 }  // namespace
@@ -71,13 +80,27 @@ void merge_contents(RunState& state, RunState part) {
         }
         if (known.flow_file.empty()) known.flow_file = item.flow_file;
         known.result_files.merge(item.result_files);
-        for (const auto& [vertex, row] : item.rows) {
-            const auto [there, added] = known.rows.emplace(vertex, row);
-            if (!added && replaceable(there->second)) there->second = row;
-        }
-        known.factors.merge(item.factors);
+        known.sweep_files.insert(known.sweep_files.end(), item.sweep_files.begin(), item.sweep_files.end());
+        if (known.rows_at_hand) merge_rows(known, item);
     }
     state.failures.merge(part.failures);
+}
+
+void release_rows(ItemState& item) {
+    item.rows.clear();
+    item.factors.clear();
+    item.rows_at_hand = false;
+}
+
+void recall_rows(ItemState& item, const std::string& name, const StatusNames& status) {
+    if (item.rows_at_hand) return;
+    for (const std::string& path : item.sweep_files) {
+        ItemState part;
+        const hdf5::Handle file = hdf5::open_input(path);
+        read_sweep(hdf5::open_group(file, item_path(name)), name, path, status, part);
+        merge_rows(item, part);
+    }
+    item.rows_at_hand = true;
 }
 
 std::vector<double> read_factor(const FactorSource& source) {

@@ -27,6 +27,8 @@ struct ItemState {
     std::string flow_file;                            // holds its flow; empty: none
     std::map<std::string, std::string> result_files;  // kind of a further result: the file that holds it
     std::size_t vertex_count = 0;                     // V, once the mesh is stored
+    std::vector<std::string> sweep_files;  // hold its rows; a later one replaces failed rows of earlier ones
+    bool rows_at_hand = true;              // false: rows and factors are in the files only
     std::map<Index, SweepRow> rows;
     std::map<Index, FactorSource> factors;
 };
@@ -46,6 +48,11 @@ bool replaceable(const SweepRow& row);
 
 /// Adds what is new in `part`; what is there already stays, but for rows that are replaceable.
 void merge_contents(RunState& state, RunState part);
+
+/// Forgets rows and factors, which stay in the item's files; and reads them again where they were forgotten.
+/// Callers of the latter hold an hdf5::Session. It throws FileError.
+void release_rows(ItemState& item);
+void recall_rows(ItemState& item, const std::string& name, const StatusNames& status);
 
 /// Reads one conformal factor. Throws FileError.
 std::vector<double> read_factor(const FactorSource& source);

@@ -180,8 +180,16 @@ std::optional<ItemSource> RunStore::source_of(const std::string& item) const {
 std::vector<SweepRow> RunStore::finished_rows(const std::string& item) const {
     const std::lock_guard guard(impl_->mutex);
     std::vector<SweepRow> rows;
-    if (const ItemState* found = impl_->find_item(item))
-        for (const auto& [vertex, row] : found->rows) rows.push_back(row);
+    const ItemState* found = impl_->find_item(item);
+    if (found == nullptr) return rows;
+    ItemState recalled;
+    if (!found->rows_at_hand) {
+        recalled = *found;
+        const hdf5::Session session;
+        recall_rows(recalled, hdf5::stored_text(item), impl_->info.status);
+        found = &recalled;
+    }
+    for (const auto& [vertex, row] : found->rows) rows.push_back(row);
     return rows;
 }
 
@@ -228,6 +236,12 @@ std::vector<std::string> RunStore::notes() const {
     return impl_->parts.notes();
 }
 
+void RunStore::release(const std::string& item) {
+    const std::lock_guard guard(impl_->mutex);
+    const auto found = impl_->state.items.find(hdf5::stored_text(item));
+    if (found != impl_->state.items.end()) release_rows(found->second);
+}
+
 void RunStore::write_item(const ItemRecord& item) {
     schema::require_valid(item);
     const std::string name = hdf5::stored_text(item.name);
@@ -241,8 +255,12 @@ void RunStore::write_item(const ItemRecord& item) {
 void RunStore::write_sweep_block(const SweepBlock& block) {
     const std::string name = hdf5::stored_text(block.item);
     const std::lock_guard guard(impl_->mutex);
-    const ItemState& item = impl_->writable_item(name);
+    ItemState& item = impl_->writable_item(name);
     schema::require_valid(block, item.vertex_count, impl_->info.status);
+    {
+        const hdf5::Session session;
+        recall_rows(item, name, impl_->info.status);
+    }
     std::vector<SweepRow> rows = block.rows;
     std::sort(rows.begin(), rows.end(),
               [](const SweepRow& a, const SweepRow& b) { return a.vertex < b.vertex; });
@@ -321,6 +339,7 @@ void RunStore::assemble(const std::vector<std::string>& items, const KeepPolicy&
     for (auto& [name, item] : impl_->state.items) {
         if (!item.file.empty()) item.file = impl_->parts.output();  // for read_item
         item.factors.clear();
+        if (!item.sweep_files.empty()) item.sweep_files = {impl_->parts.output()};
     }
     impl_->parts.remove();
 }

@@ -141,6 +141,10 @@ class RunStore {
     /// log.
     [[nodiscard]] std::vector<std::string> notes() const;
 
+    /// No more of the item's rows are expected: they need not be held in memory. They can still be asked for,
+    /// and added to. An item that is not stored: no-op.
+    void release(const std::string& item);
+
     void write_item(const ItemRecord& item);
     void write_sweep_block(const SweepBlock& block);
     void write_flow(const FlowRecord& flow);

@@ -339,5 +339,30 @@ TEST(StoreRunStore, FailedRowsAreReplacedAndOnlyThose) {
     EXPECT_EQ(verify_structure(path), std::vector<std::string>());
 }
 
+TEST(RunStore, RowsThatAreReleasedAreStillThere) {
+    const TemporaryFolder folder;
+    const ItemRecord item = sample_item("a@32", 4);
+    const auto write = [&](const std::string& path, bool release) {
+        RunStore store(path, sample_info(), false);
+        store.release("none");
+        store.write_item(item);
+        store.write_sweep_block(sample_block(item, range(0, 5)));  // vertex 4 failed
+        if (release) store.release(item.name);
+        EXPECT_EQ(store.finished_vertices(item.name), range(0, 5));
+        EXPECT_THROW(store.write_sweep_block(sample_block(item, {3})), std::invalid_argument);
+        if (release) store.release(item.name);
+        SweepBlock again = sample_block(item, {4, 5, 6});
+        again.rows[0].flips = 77;
+        store.write_sweep_block(again);
+        if (release) store.release(item.name);
+        EXPECT_EQ(store.finished_rows(item.name).at(4).flips, 77);
+        store.assemble({item.name}, kSampleKeep);
+        EXPECT_EQ(store.finished_vertices(item.name), range(0, 7));
+    };
+    write(folder.file("held.h5"), false);
+    write(folder.file("released.h5"), true);
+    EXPECT_EQ(digests(folder.file("released.h5")), digests(folder.file("held.h5")));
+}
+
 }  // namespace
 }  // namespace ricci

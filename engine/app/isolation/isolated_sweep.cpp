@@ -119,7 +119,8 @@ void IsolatedSweep::message(std::size_t task, const Frame& frame, const Reply& r
             Entry& entry = entry_of(source, reader.get_text());
             entry.over = true;
             entry.item.seconds += reader.get<double>();
-            return flush(source);
+            flush(source);
+            return records_->item_finished(entry.item.name, entry.item.seconds);
         }
         case SweepMessage::failed:
             return failed(source, reader.get_failure());
