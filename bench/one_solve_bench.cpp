@@ -46,7 +46,7 @@ class TimedMetric final : public Metric {
     explicit TimedMetric(const FlowSurface& surface)
         : Metric(surface, Geometry::euclidean, false), inner_(surface, Geometry::euclidean, false) {}
 
-    bool move_to(std::span<const double> u) override {
+    bool move_to(ConformalFactor u) override {
         bool done = false;
         moves.measure([&] { done = inner_.move_to(u); });
         copy_flips();

@@ -25,10 +25,13 @@ target_include_directories(ricci_io_dependencies SYSTEM INTERFACE ${HDF5_INCLUDE
 target_link_libraries(ricci_io_dependencies INTERFACE
     ${HDF5_C_LIBRARY} ZLIB::ZLIB ${XXHASH_LIBRARY} fmt::fmt nlohmann_json::nlohmann_json)
 
+add_library(ricci_kernels_dependencies INTERFACE IMPORTED)
+target_include_directories(ricci_kernels_dependencies SYSTEM INTERFACE ${BOOST_MULTIPRECISION_INCLUDE_DIR} ${MPFR_INCLUDE_DIR})
+target_link_libraries(ricci_kernels_dependencies INTERFACE ${MPFR_LIBRARY} ${GMP_LIBRARY})
+
 add_library(ricci_engine_dependencies INTERFACE IMPORTED)
-target_include_directories(ricci_engine_dependencies SYSTEM INTERFACE ${BOOST_MULTIPRECISION_INCLUDE_DIR} ${MPFR_INCLUDE_DIR})
 target_link_libraries(ricci_engine_dependencies INTERFACE
-    fmt::fmt OpenMeshCore OpenMeshTools nanoflann::nanoflann ${MPFR_LIBRARY} ${GMP_LIBRARY})
+    ricci_kernels_dependencies fmt::fmt OpenMeshCore OpenMeshTools nanoflann::nanoflann)
 
 if(RICCI_CHOLMOD)
     ricci_find(OpenMP COMPONENTS CXX)  # only to keep CHOLMOD's own parallel regions serial

@@ -1,10 +1,13 @@
 #include "kernels/delaunay.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <type_traits>
 
+#include "kernels/extended.h"
 #include "kernels/vector_math.h"
+#include "kernels/wide_sides.h"
 
 namespace ricci {
 namespace {
@@ -27,12 +30,11 @@ inline Real cosine_test(Real a, Real b, Real c, Real slack) {
 
 /// Logarithms of the chords of face f in the metric u, relative to the longest.
 template <class Real>
-inline void face_logs(const IntrinsicTriangulation<Real>& t, std::span<const double> u, std::size_t h,
-                      Real* x) {
+inline void face_logs(const IntrinsicTriangulation<Real>& t, ConformalFactor u, std::size_t h, Real* x) {
     const auto& tail = t.connectivity.tail;
     for (std::size_t k = 0; k < 3; ++k) x[k] = t.log_chord[h + k];
     if (!u.empty()) {
-        const Real u0 = u[at(tail[h])], u1 = u[at(tail[h + 1])], u2 = u[at(tail[h + 2])];
+        const Real u0 = u.at<Real>(tail[h]), u1 = u.at<Real>(tail[h + 1]), u2 = u.at<Real>(tail[h + 2]);
         x[0] += Real(0.5) * (u0 + u1);
         x[1] += Real(0.5) * (u1 + u2);
         x[2] += Real(0.5) * (u2 + u0);
@@ -43,7 +45,7 @@ inline void face_logs(const IntrinsicTriangulation<Real>& t, std::span<const dou
 
 /// The corner test of the corner opposite halfedge h.
 template <class Real>
-Real opposite_test(const IntrinsicTriangulation<Real>& t, std::span<const double> u, Index h) {
+Real opposite_test(const IntrinsicTriangulation<Real>& t, ConformalFactor u, Index h) {
     const auto first = static_cast<std::size_t>(3 * face_of(h));
     Real x[3];
     face_logs(t, u, first, x);
@@ -52,8 +54,38 @@ Real opposite_test(const IntrinsicTriangulation<Real>& t, std::span<const double
     return cosine_test(x[(k + 1) % 3], x[(k + 2) % 3], x[k], kSlack<Real>);
 }
 
+/// 1 + cos and 1 - cos of the angle opposite a side. Both keep their
+/// relative accuracy as the angle goes to 0 or pi, where the cosine itself tells nothing any more; negative
+/// where the sides break the triangle inequality.
+struct HalfCosines {
+    long double above, below;
+};
+
+HalfCosines opposite_half_cosines(const IntrinsicTriangulation<WideReal>& t, ConformalFactor u, Index h) {
+    const auto first = static_cast<std::size_t>(3 * face_of(h));
+    WideReal x[3];
+    face_logs(t, u, first, x);
+    const WideSides s = wide_sides(x);
+    const auto k = static_cast<std::size_t>(h) - first, i = (k + 1) % 3, j = (k + 2) % 3;
+    const long double a = s.chord[i], b = s.chord[j], c = s.chord[k], scale = 1 / (2 * a * b);
+    // (a + b)^2 - c^2 and c^2 - (a - b)^2 over 2ab.
+    return {(a + b + c) * s.difference.excess[k] * scale,
+            s.difference.excess[i] * s.difference.excess[j] * scale};
+}
+
+/// cos + cos' = (1 + cos) - (1 - cos'), with the more obtuse angle first: a difference of accurate numbers.
+bool edge_fails(const IntrinsicTriangulation<WideReal>& t, ConformalFactor u, Index h) {
+    constexpr long double kTie = kSlack<long double>;
+    const HalfCosines p = opposite_half_cosines(t, u, h),
+                      q = opposite_half_cosines(t, u, t.connectivity.twin[at(h)]);
+    const auto below = [](long double x, long double y) {
+        return x - y < -kTie * (std::abs(x) + std::abs(y));
+    };
+    return p.above < q.above ? below(p.above, q.below) : below(q.above, p.below);
+}
+
 template <class Real>
-bool edge_fails(const IntrinsicTriangulation<Real>& t, std::span<const double> u, Index h) {
+bool edge_fails(const IntrinsicTriangulation<Real>& t, ConformalFactor u, Index h) {
     return opposite_test(t, u, h) + opposite_test(t, u, t.connectivity.twin[at(h)]) < Real(0);
 }
 
@@ -72,8 +104,7 @@ RICCI_VECTOR_CLONES void test_block(double (*x)[kFaceBlock], int lanes, double s
 /// The corner opposite each halfedge, tested in one pass over all faces. In extended precision the pass is
 /// double all the same, with its slack turned round: it only finds the edges worth a look. // 3F
 template <class Real>
-void test_corners(const IntrinsicTriangulation<Real>& t, std::span<const double> u,
-                  std::vector<double>& out) {
+void test_corners(const IntrinsicTriangulation<Real>& t, ConformalFactor u, std::vector<double>& out) {
     const double slack = std::is_same_v<Real, double> ? kSlack<double> : -kSlack<double>;
     const auto faces = static_cast<std::size_t>(t.connectivity.face_count());
     out.resize(3 * faces);
@@ -98,7 +129,7 @@ void test_corners(const IntrinsicTriangulation<Real>& t, std::span<const double>
 }  // namespace
 
 template <class Real>
-FlipCount make_delaunay(IntrinsicTriangulation<Real>& t, std::span<const double> u, FlipRule rule,
+FlipCount make_delaunay(IntrinsicTriangulation<Real>& t, ConformalFactor u, FlipRule rule,
                         DelaunayWorkspace& w) {
     Connectivity& c = t.connectivity;
     w.touched_faces.clear();
@@ -148,7 +179,7 @@ FlipCount make_delaunay(IntrinsicTriangulation<Real>& t, std::span<const double>
 }
 
 template <class Real>
-std::int64_t count_non_delaunay(const IntrinsicTriangulation<Real>& t, std::span<const double> u) {
+std::int64_t count_non_delaunay(const IntrinsicTriangulation<Real>& t, ConformalFactor u) {
     std::int64_t count = 0;
     for (Index h = 0; h < t.connectivity.halfedge_count(); ++h) {
         const Index twin = t.connectivity.twin[at(h)];
@@ -157,13 +188,13 @@ std::int64_t count_non_delaunay(const IntrinsicTriangulation<Real>& t, std::span
     return count;
 }
 
-#define RICCI_INSTANTIATE(Real)                                                                              \
-    template FlipCount make_delaunay<Real>(IntrinsicTriangulation<Real>&, std::span<const double>, FlipRule, \
-                                           DelaunayWorkspace&);                                              \
-    template std::int64_t count_non_delaunay<Real>(const IntrinsicTriangulation<Real>&,                      \
-                                                   std::span<const double>);
+#define RICCI_INSTANTIATE(Real)                                                                      \
+    template FlipCount make_delaunay<Real>(IntrinsicTriangulation<Real>&, ConformalFactor, FlipRule, \
+                                           DelaunayWorkspace&);                                      \
+    template std::int64_t count_non_delaunay<Real>(const IntrinsicTriangulation<Real>&, ConformalFactor);
 RICCI_INSTANTIATE(double)
 RICCI_INSTANTIATE(long double)
+RICCI_INSTANTIATE(WideReal)
 #undef RICCI_INSTANTIATE
 
 }  // namespace ricci

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "kernels/conformal_factor.h"
 #include "kernels/edge_flip.h"
 
 namespace ricci {
@@ -26,15 +27,16 @@ struct DelaunayWorkspace {
 
 /// Flips until every edge is Delaunay in the metric u: edge ij with opposite vertices k, l is Delaunay iff
 ///   (a^2+b^2-c^2)/(ab) + (d^2+e^2-c^2)/(de) >= 0 on chords, c the edge's.
-/// Ties (cocircular to rounding: within 64 eps (a/b + b/a + d/e + e/d)) are left alone. Edges on the boundary
-/// and inside one face never flip. `u`: V, or empty for u = 0. Isometric flips need u = 0. Deterministic:
-/// seeds in order of halfedge.
+/// Ties (cocircular to rounding: within 64 eps (a/b + b/a + d/e + e/d); of WideReal to the rounding of 1 +
+/// cos and 1 - cos, which tells needles apart) are left alone. Edges on the boundary and inside one face
+/// never flip. `u`: V, or empty for u = 0. Isometric flips need u = 0. Deterministic: seeds in order of
+/// halfedge.
 template <class Real>
-FlipCount make_delaunay(IntrinsicTriangulation<Real>& triangulation, std::span<const double> u, FlipRule rule,
+FlipCount make_delaunay(IntrinsicTriangulation<Real>& triangulation, ConformalFactor u, FlipRule rule,
                         DelaunayWorkspace& workspace);
 
 /// Number of edges that fail the test above (with its tolerance): zero after make_delaunay.
 template <class Real>
-std::int64_t count_non_delaunay(const IntrinsicTriangulation<Real>& triangulation, std::span<const double> u);
+std::int64_t count_non_delaunay(const IntrinsicTriangulation<Real>& triangulation, ConformalFactor u);
 
 }  // namespace ricci

@@ -2,12 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
+
+#include "kernels/extended.h"
 
 namespace ricci {
 namespace {
 
 std::size_t at(Index h) {
     return static_cast<std::size_t>(h);
+}
+
+/// log(1 + e^x), x <= 0; to the absolute accuracy of Real.
+template <class Real>
+Real log_one_plus_exp(const Real& x) {
+    if constexpr (std::is_floating_point_v<Real>) {
+        return std::log1p(std::exp(x));
+    } else {
+        return log(Real(Real(1) + exp(x)));
+    }
 }
 
 }  // namespace
@@ -57,29 +70,37 @@ Real ptolemy_log(std::span<const Real> log_chord, const Connectivity& c, Index h
     const Real il = log_chord[at(next_halfedge(t))], lj = log_chord[at(prev_halfedge(t))];
     const Real first = ki + lj, second = il + jk;
     const Real larger = std::max(first, second), smaller = std::min(first, second);
-    return larger + std::log1p(std::exp(smaller - larger)) - log_chord[at(h)];
+    return larger + log_one_plus_exp(Real(smaller - larger)) - log_chord[at(h)];
 }
 
 template <class Real>
 Real unfolded_log(std::span<const Real> log_chord, const Connectivity& c, Index h) {
     const Index t = c.twin[at(h)];
+    using std::exp;
+    using std::log;
+    using std::sqrt;
     const Real unit = log_chord[at(h)];  // lengths relative to the edge: c = 1
-    const Real a = std::exp(log_chord[at(next_halfedge(h))] - unit),
-               b = std::exp(log_chord[at(prev_halfedge(h))] - unit);
-    const Real d = std::exp(log_chord[at(next_halfedge(t))] - unit),
-               e = std::exp(log_chord[at(prev_halfedge(t))] - unit);
+    const Real a = exp(Real(log_chord[at(next_halfedge(h))] - unit)),
+               b = exp(Real(log_chord[at(prev_halfedge(h))] - unit));
+    const Real d = exp(Real(log_chord[at(next_halfedge(t))] - unit)),
+               e = exp(Real(log_chord[at(prev_halfedge(t))] - unit));
     // Apex over the edge from (0,0) to (1,0), at distance `from_i` of the start and `from_j` of the end.
-    const auto height = [](Real from_i, Real from_j) {
+    const auto height = [](Real from_i, Real from_j) -> Real {
         Real x = Real(1), y = std::max(from_i, from_j), z = std::min(from_i, from_j);
         if (y > x) std::swap(x, y);
         if (z > y) std::swap(y, z);
         const Real sixteen_area2 = (x + (y + z)) * (z - (x - y)) * (z + (x - y)) * (x + (y - z));
-        return std::sqrt(std::max(sixteen_area2, Real(0))) / Real(2);
+        return sqrt(Real(std::max(sixteen_area2, Real(0)))) / Real(2);
     };
-    const auto foot = [](Real from_i, Real from_j) {
+    const auto foot = [](Real from_i, Real from_j) -> Real {
         return ((from_i - from_j) * (from_i + from_j) + Real(1)) / Real(2);
     };
-    return std::log(std::hypot(foot(b, a) - foot(d, e), height(b, a) + height(d, e))) + unit;
+    const Real x = foot(b, a) - foot(d, e), y = height(b, a) + height(d, e);
+    if constexpr (std::is_floating_point_v<Real>) {
+        return log(std::hypot(x, y)) + unit;
+    } else {
+        return log(Real(x * x + y * y)) / Real(2) + unit;  // nothing overflows there
+    }
 }
 
 #define RICCI_INSTANTIATE(Real)                                                         \
@@ -88,6 +109,7 @@ Real unfolded_log(std::span<const Real> log_chord, const Connectivity& c, Index 
     template Real unfolded_log<Real>(std::span<const Real>, const Connectivity&, Index);
 RICCI_INSTANTIATE(double)
 RICCI_INSTANTIATE(long double)
+RICCI_INSTANTIATE(WideReal)
 #undef RICCI_INSTANTIATE
 
 }  // namespace ricci

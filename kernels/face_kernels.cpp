@@ -5,9 +5,11 @@
 #include <type_traits>
 #include <vector>
 
+#include "kernels/extended.h"
 #include "kernels/parallel.h"
 #include "kernels/triangle.h"
 #include "kernels/vector_math.h"
+#include "kernels/wide_sides.h"
 
 namespace ricci {
 namespace {
@@ -17,6 +19,7 @@ std::size_t at(Index i) {
 }
 
 /// Scratch of one block, one array per halfedge of the face, so that loops over faces load contiguously.
+/// Chords are loaded as logarithms and then exponentiated in place.
 template <class Real>
 struct BlockChords {
     alignas(64) Real chord[3][kFaceBlock];
@@ -24,6 +27,15 @@ struct BlockChords {
     alignas(64) Real slope[3][2][kFaceBlock];  // s(l) dl/du at tail and head; used by circle packings only
     int lanes = 0;                             // padded count
 };
+
+/// Of lengths in more digits than triangles are evaluated in.
+struct WideChords : BlockChords<long double> {
+    SideDifferences<long double> difference[kFaceBlock];
+};
+
+template <class Real>
+using LoadedChords =
+    std::conditional_t<std::is_floating_point_v<Real>, BlockChords<TriangleReal<Real>>, WideChords>;
 
 template <class Real>
 struct BlockResults {
@@ -34,14 +46,24 @@ struct BlockResults {
     alignas(64) Real radicand[kFaceBlock];
 };
 
+template <int kappa, class Real>
+RICCI_ALWAYS_INLINE TriangleTerms<Real> terms_of(const BlockChords<Real>& in, int i) {
+    return triangle_terms<kappa>(in.chord[0][i], in.chord[1][i], in.chord[2][i]);
+}
+
+template <int kappa>
+TriangleTerms<long double> terms_of(const WideChords& in, int i) {
+    return triangle_terms<kappa>(in.chord[0][i], in.chord[1][i], in.chord[2][i], in.difference[i]);
+}
+
 /// Angles (and derivatives) of a block of chords. Plain loops over arrays: the compiler vectorises them.
-template <int kappa, class Real, bool derivatives, bool scaling>
-RICCI_ALWAYS_INLINE void evaluate_block(const BlockChords<Real>& in, BlockResults<Real>& out) {
+template <int kappa, class Real, bool derivatives, bool scaling, class Chords>
+RICCI_ALWAYS_INLINE void evaluate_block(const Chords& in, BlockResults<Real>& out) {
     const int lanes = in.lanes;
 #pragma omp simd
     for (int i = 0; i < lanes; ++i) {
         const Real l0 = in.chord[0][i], l1 = in.chord[1][i], l2 = in.chord[2][i];
-        const TriangleTerms<Real> t = triangle_terms<kappa>(l0, l1, l2);
+        const TriangleTerms<Real> t = terms_of<kappa>(in, i);
         out.radicand[i] = t.radicand;
         out.angle[0][i] = std::atan2(t.root, t.numerator[0]);
         out.angle[1][i] = std::atan2(t.root, t.numerator[1]);
@@ -77,12 +99,12 @@ RICCI_ALWAYS_INLINE void exponentiate(BlockChords<Real>& block) {
 }
 
 template <int kappa, class Real, bool derivatives>
-RICCI_ALWAYS_INLINE void scaled_block(BlockChords<Real>& in, BlockResults<Real>& out) {
+RICCI_ALWAYS_INLINE void scaled_block(LoadedChords<Real>& in, BlockResults<TriangleReal<Real>>& out) {
     exponentiate(in);
-    evaluate_block<kappa, Real, derivatives, true>(in, out);
+    evaluate_block<kappa, TriangleReal<Real>, derivatives, true>(in, out);
 }
 
-// One clone per instruction set of each double kernel; long double stays scalar.
+// One clone per instruction set of each double kernel; the others stay scalar.
 #define RICCI_SCALED(name, kappa)                                                                       \
     RICCI_VECTOR_CLONES void scaled_angles_##name(BlockChords<double>& in, BlockResults<double>& out) { \
         scaled_block<kappa, double, false>(in, out);                                                    \
@@ -102,7 +124,7 @@ RICCI_SCALED(spherical, 1)
 #undef RICCI_SCALED
 
 template <class Real>
-using BlockKernel = void (*)(BlockChords<Real>&, BlockResults<Real>&);
+using BlockKernel = void (*)(LoadedChords<Real>&, BlockResults<TriangleReal<Real>>&);
 
 template <class Real>
 BlockKernel<Real> scaled_kernel(Geometry geometry, bool derivatives) {
@@ -151,21 +173,28 @@ void pad(BlockChords<Real>& block, int count, Real value) {
 /// Logarithms of the chords of faces [begin, end); Euclidean ones relative to the face's longest.
 template <class Real>
 void load_scaled(bool relative, const ScaledChords<Real>& in, std::int64_t begin, std::int64_t end,
-                 BlockChords<Real>& block) {
+                 LoadedChords<Real>& block) {
+    using Triangle = TriangleReal<Real>;
     const int count = static_cast<int>(end - begin);
     for (int i = 0; i < count; ++i) {
         const auto h = static_cast<std::size_t>(3 * (begin + i));
-        const Real u0 = in.u[at(in.tail[h])], u1 = in.u[at(in.tail[h + 1])], u2 = in.u[at(in.tail[h + 2])];
+        const Real u0 = in.u.template at<Real>(in.tail[h]), u1 = in.u.template at<Real>(in.tail[h + 1]),
+                   u2 = in.u.template at<Real>(in.tail[h + 2]);
         const Real x0 = in.log_chord[h] + Real(0.5) * (u0 + u1);
         const Real x1 = in.log_chord[h + 1] + Real(0.5) * (u1 + u2);
         const Real x2 = in.log_chord[h + 2] + Real(0.5) * (u2 + u0);
         const Real top = relative ? std::max(x0, std::max(x1, x2)) : Real(0);
-        block.scale[i] = top;
-        block.chord[0][i] = x0 - top;
-        block.chord[1][i] = x1 - top;
-        block.chord[2][i] = x2 - top;
+        block.scale[i] = static_cast<Triangle>(top);
+        block.chord[0][i] = static_cast<Triangle>(x0 - top);
+        block.chord[1][i] = static_cast<Triangle>(x1 - top);
+        block.chord[2][i] = static_cast<Triangle>(x2 - top);
+        if constexpr (std::is_same_v<Real, WideReal>)
+            block.difference[i] = wide_sides({x0 - top, x1 - top, x2 - top}).difference;
     }
-    pad(block, count, Real(0));
+    pad<Triangle>(block, count, Triangle(0));
+    if constexpr (std::is_same_v<Real, WideReal>)
+        std::fill(block.difference + count, block.difference + block.lanes,
+                  SideDifferences<long double>{{0, 0, 0}, {1, 1, 1}});
 }
 
 /// Chords and slopes of a circle packing; Euclidean ones relative to the face's largest radius.
@@ -225,20 +254,20 @@ std::int64_t store(int kappa, std::int64_t begin, std::int64_t end, const BlockC
 
 /// Runs load, kernel and store over all blocks; broken faces are counted per block and summed in order.
 template <class Real, class Load>
-std::int64_t run_blocks(int kappa, std::size_t faces, const FaceFields<Real>& out, bool parallel,
-                        BlockKernel<Real> kernel, Load&& load) {
+std::int64_t run_blocks(int kappa, std::size_t faces, const FaceFields<TriangleReal<Real>>& out,
+                        bool parallel, BlockKernel<Real> kernel, Load&& load) {
     constexpr std::int64_t kTask = 16;  // blocks per task
     const auto count = static_cast<std::int64_t>(faces);
     std::vector<std::int64_t> broken(at(static_cast<Index>(count / (kTask * kFaceBlock) + 1)), 0);
     for_blocks(count, kTask * kFaceBlock, parallel, [&](std::int64_t begin, std::int64_t end) {
-        BlockChords<Real> in;
-        BlockResults<Real> results;
+        LoadedChords<Real> in;
+        BlockResults<TriangleReal<Real>> results;
         std::int64_t sum = 0;
         for (std::int64_t b = begin; b < end; b += kFaceBlock) {
             const std::int64_t e = std::min(end, b + kFaceBlock);
             load(b, e, in);
             kernel(in, results);
-            sum += store(kappa, b, e, in, results, out);
+            sum += store<TriangleReal<Real>>(kappa, b, e, in, results, out);
         }
         broken[static_cast<std::size_t>(begin / (kTask * kFaceBlock))] = sum;
     });
@@ -250,13 +279,13 @@ std::int64_t run_blocks(int kappa, std::size_t faces, const FaceFields<Real>& ou
 }  // namespace
 
 template <class Real>
-std::int64_t evaluate_faces(Geometry geometry, const ScaledChords<Real>& chords, const FaceFields<Real>& out,
-                            bool parallel) {
+std::int64_t evaluate_faces(Geometry geometry, const ScaledChords<Real>& chords,
+                            const FaceFields<TriangleReal<Real>>& out, bool parallel) {
     const bool relative = geometry == Geometry::euclidean;
     return run_blocks<Real>(curvature_sign(geometry), chords.tail.size() / 3, out, parallel,
                             scaled_kernel<Real>(geometry, !out.off.empty()),
-                            [&](std::int64_t begin, std::int64_t end, BlockChords<Real>& block) {
-                                load_scaled(relative, chords, begin, end, block);
+                            [&](std::int64_t begin, std::int64_t end, LoadedChords<Real>& block) {
+                                load_scaled<Real>(relative, chords, begin, end, block);
                             });
 }
 
@@ -264,6 +293,8 @@ template std::int64_t evaluate_faces<double>(Geometry, const ScaledChords<double
                                              bool);
 template std::int64_t evaluate_faces<long double>(Geometry, const ScaledChords<long double>&,
                                                   const FaceFields<long double>&, bool);
+template std::int64_t evaluate_faces<WideReal>(Geometry, const ScaledChords<WideReal>&,
+                                               const FaceFields<long double>&, bool);
 
 std::int64_t evaluate_faces(Geometry geometry, const PackedCircles& circles, const FaceFields<double>& out,
                             bool parallel) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "kernels/conformal_factor.h"
 #include "kernels/connectivity.h"
 #include "kernels/geometry.h"
 
@@ -15,7 +16,7 @@ template <class Real>
 struct ScaledChords {
     std::span<const Index> tail;      // 3F
     std::span<const Real> log_chord;  // 3F
-    std::span<const double> u;        // V, conformal factor; chord of i->j is exp(log_chord + (u_i+u_j)/2)
+    ConformalFactor u;                // V; chord of i->j is exp(log_chord + (u_i+u_j)/2)
 };
 
 /// A circle-packing metric as data (Zhang et al. 2014, The unified discrete surface Ricci flow):
@@ -42,8 +43,8 @@ struct FaceFields {
 /// sphere, with a perimeter beyond 2 pi: pi, pi, pi) and their derivatives are not finite. Runs blocks of
 /// faces in parallel where `parallel`; the same bits either way.
 template <class Real>
-std::int64_t evaluate_faces(Geometry geometry, const ScaledChords<Real>& chords, const FaceFields<Real>& out,
-                            bool parallel);
+std::int64_t evaluate_faces(Geometry geometry, const ScaledChords<Real>& chords,
+                            const FaceFields<TriangleReal<Real>>& out, bool parallel);
 std::int64_t evaluate_faces(Geometry geometry, const PackedCircles& circles, const FaceFields<double>& out,
                             bool parallel);
 

@@ -18,7 +18,7 @@ struct IntrinsicTriangulation {
     std::vector<Real> log_chord;  // 3F, equal on twins
 };
 
-/// The surface's own triangulation; logarithms taken in long double.
+/// The surface's own triangulation; logarithms taken in long double, or in Real where that has more digits.
 template <class Real>
 IntrinsicTriangulation<Real> intrinsic_triangulation(const SurfaceMesh& mesh);
 

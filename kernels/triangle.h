@@ -8,15 +8,9 @@
 
 namespace ricci {
 
-/// Sum of two numbers minus a third, b + c - a, in Kahan's order: relative error of a few ulps of the data
-/// for any shape (W. Kahan, Miscalculating area and angles of a needle-like triangle). `p` >= `q` are b and c
-/// sorted.
-template <class Real>
-inline Real excess(Real a, Real p, Real q) {
-    return q + (p - a);
-}
-
-/// What a triangle's angles are made of.
+/// What a triangle's angles are made of. Sums of two sides minus the third are taken in Kahan's order, the
+/// shorter of the two plus (the longer minus the third): relative error of a few ulps of the data for any
+/// shape (W. Kahan, Miscalculating area and angles of a needle-like triangle).
 template <class Real>
 struct TriangleTerms {
     Real root;  // sqrt(16 A^2 - kappa (abc)^2) = 2 sin(theta) s(l) s(l'); zero or NaN-free for a broken
@@ -25,18 +19,24 @@ struct TriangleTerms {
     Real radicand;      // what the root was taken of; not positive: no such triangle
 };
 
+/// What cancels in a triangle, for callers who know it better than by subtracting chords. Of side k: the
+/// longer of the other two minus it, and both minus it.
+template <class Real>
+struct SideDifferences {
+    Real gap[3], excess[3];
+};
+
 template <int kappa, class Real>
-inline TriangleTerms<Real> triangle_terms(Real l0, Real l1, Real l2) {
+inline TriangleTerms<Real> triangle_terms(Real l0, Real l1, Real l2, const SideDifferences<Real>& d) {
     const Real max01 = l0 > l1 ? l0 : l1, min01 = l0 > l1 ? l1 : l0;
     const Real max12 = l1 > l2 ? l1 : l2, min12 = l1 > l2 ? l2 : l1;
     const Real max20 = l2 > l0 ? l2 : l0, min20 = l2 > l0 ? l0 : l2;
     // Corner 0 lies opposite l1, corner 1 opposite l2, corner 2 opposite l0.
     TriangleTerms<Real> t;
-    t.radicand =
-        (l0 + l1 + l2) * excess(l1, max20, min20) * excess(l2, max01, min01) * excess(l0, max12, min12);
-    t.numerator[0] = (max20 - l1) * (max20 + l1) + min20 * min20;
-    t.numerator[1] = (max01 - l2) * (max01 + l2) + min01 * min01;
-    t.numerator[2] = (max12 - l0) * (max12 + l0) + min12 * min12;
+    t.radicand = (l0 + l1 + l2) * d.excess[1] * d.excess[2] * d.excess[0];
+    t.numerator[0] = d.gap[1] * (max20 + l1) + min20 * min20;
+    t.numerator[1] = d.gap[2] * (max01 + l2) + min01 * min01;
+    t.numerator[2] = d.gap[0] * (max12 + l0) + min12 * min12;
     if constexpr (kappa != 0) {
         const Real s0 = l0 * l0, s1 = l1 * l1, s2 = l2 * l2;
         t.radicand -= Real(kappa) * (s0 * s1 * s2);
@@ -46,6 +46,17 @@ inline TriangleTerms<Real> triangle_terms(Real l0, Real l1, Real l2) {
     }
     t.root = std::sqrt(t.radicand > Real(0) ? t.radicand : Real(0));
     return t;
+}
+
+template <int kappa, class Real>
+inline TriangleTerms<Real> triangle_terms(Real l0, Real l1, Real l2) {
+    const Real gap0 = (l1 > l2 ? l1 : l2) - l0, gap1 = (l2 > l0 ? l2 : l0) - l1,
+               gap2 = (l0 > l1 ? l0 : l1) - l2;
+    return triangle_terms<kappa>(
+        l0, l1, l2,
+        SideDifferences<Real>{
+            {gap0, gap1, gap2},
+            {(l1 > l2 ? l2 : l1) + gap0, (l2 > l0 ? l0 : l2) + gap1, (l0 > l1 ? l1 : l0) + gap2}});
 }
 
 /// Area of the triangle in its geometry: tan(area/2) = root/2 / (1 + sum of cos(h)(l)) for kappa != 0 (the

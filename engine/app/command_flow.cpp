@@ -40,7 +40,8 @@ nlohmann::json to_json(const std::string& file, const FlowResult& r, const FlowO
                              {"flips", r.outcome.flips},
                              {"gauss_bonnet_error", finite_or_null(r.gauss_bonnet_error)},
                              {"area", finite_or_null(r.area)},
-                             {"extended_precision", r.extended_precision},
+                             {"extended_precision", r.precision_digits > 16},
+                             {"precision_digits", r.precision_digits},
                              {"seconds", seconds},
                              {"log", log}};
     if (r.packing) {
@@ -63,7 +64,8 @@ void print_text(const std::string& item, const FlowResult& r, const FlowOptions&
         "{}: {} ({}, {}, {}), residual {:.3g}, {} steps, {} flips, Gauss-Bonnet error {:.2g}, {:.3f} s{}\n",
         item, name_of(r.outcome.status), name_of(r.geometry), name_of(options.scheme),
         name_of(options.method), r.outcome.residual_max, r.outcome.iterations, r.outcome.flips,
-        r.gauss_bonnet_error, seconds, r.extended_precision ? ", extended precision" : "");
+        r.gauss_bonnet_error, seconds,
+        r.precision_digits > 16 ? fmt::format(", {} digits", r.precision_digits) : "");
     if (r.packing)
         fmt::print(
             "  initial packing: lengths off by {:.3g} at most, {:.3g} on average; {} obtuse intersections "

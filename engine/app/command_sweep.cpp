@@ -197,6 +197,7 @@ SweepConfig merged(const CLI::App& command, const SweepArguments& a) {
     if (given("--max-iterations")) c.max_iterations = v.max_iterations;
     if (given("--densify")) c.densify = v.densify;
     if (given("--solver")) c.solver = v.solver;
+    if (given("--precision")) c.precision = v.precision;
     if (given("--vertices")) c.vertices = v.vertices;
     if (given("--resolutions")) c.resolutions = v.resolutions;
     if (given("--keep")) c.keep = v.keep;
@@ -247,6 +248,10 @@ void add_sweep(CLI::App& app, CommonOptions& common, Action& action) {
     command->add_option("--solver", v.solver,
                         "lanes (default): several vertices at a time where the scheme is vertex-scaling; or "
                         "newton: one at a time");
+    command->add_option(
+        "--precision", v.precision,
+        "auto (default: double, and 19 or 50 digits where its rounding is too coarse), double, "
+        "extended (no lanes)");
     command->add_option("--lanes", v.lanes, "Vertices at a time on each thread, 1 to 16; default 16")
         ->check(CLI::Range(1, kLanes));
     command

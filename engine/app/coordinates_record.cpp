@@ -1,5 +1,6 @@
 #include "engine/app/coordinates_record.h"
 
+#include "engine/app/accuracy_record.h"
 #include "engine/app/console.h"
 #include "engine/app/result_arrays.h"
 
@@ -37,6 +38,7 @@ ResultGroup make_coordinates_group(const std::string& item, const SurfaceCoordin
     group.kind = "teichmuller";
     group.status = static_cast<std::uint8_t>(s.status);
     group.attributes = {{"geometry", std::string(name_of(s.geometry))}};
+    add_accuracy(s.accuracy, group);
     if (s.status != Status::converged) return group;
     group.attributes.push_back({"marking", s.marking});
     group.attributes.push_back({"smallest_gap", s.smallest_gap});
@@ -81,6 +83,7 @@ nlohmann::json coordinates_json(const SurfaceCoordinates& s) {
                              {"message", s.message},
                              {"coordinates", s.coordinates},
                              {"names", s.names}};
+    add_accuracy(s.accuracy, object);
     nlohmann::json choices = nlohmann::json::array();
     for (const MarkingChoice& c : s.choices) choices.push_back({{"name", c.name}, {"gap", c.gap}});
     object["marking"] = {{"kind", s.marking}, {"smallest_gap", s.smallest_gap}, {"choices", choices}};

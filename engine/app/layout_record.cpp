@@ -1,5 +1,6 @@
 #include "engine/app/layout_record.h"
 
+#include "engine/app/accuracy_record.h"
 #include "engine/app/console.h"
 #include "engine/app/result_arrays.h"
 
@@ -104,6 +105,7 @@ ResultGroup make_layout_group(const std::string& item, const SurfaceMesh& mesh, 
     group.kind = "layout";
     group.status = static_cast<std::uint8_t>(s.flow.outcome.status);
     group.attributes = {{"geometry", std::string(name_of(s.flow.geometry))}};
+    add_accuracy(accuracy_of(s.flow), group);
     if (!s.refinement) return group;
     const auto number = [](std::int64_t value) { return value; };
     const std::vector<ResultAttribute> more = {
@@ -147,11 +149,11 @@ nlohmann::json layout_json(const SurfaceStructure& s) {
     nlohmann::json object = {{"geometry", name_of(s.flow.geometry)},
                              {"status", name_of(s.flow.outcome.status)},
                              {"message", s.flow.message},
-                             {"residual_max", finite_or_null(s.flow.outcome.residual_max)},
                              {"generators", nlohmann::json::array()},
                              {"relator_error", nullptr},
                              {"closing_error", nullptr},
                              {"flipped_pieces", nullptr}};
+    add_accuracy(accuracy_of(s.flow), object);
     if (!s.refinement) return object;
     const std::vector<std::string> letters = s.basis->letter_names();
     for (const GroupGenerator& g : s.group.generators)

@@ -78,6 +78,8 @@ FlowRecord make_flow_record(const std::string& item, const FlowResult& result, c
     record.residual_max = result.outcome.residual_max;
     record.gauss_bonnet_error = result.gauss_bonnet_error;
     record.seconds = seconds;
+    record.precision_digits = result.precision_digits;
+    record.conformal_factor_low = result.conformal_factor_low;
     record.doubled = result.doubled;
     record.conformal_factor = result.conformal_factor;
     record.target_curvature = result.target_curvature;
@@ -105,6 +107,8 @@ SweepRow make_row(const SweepSolve& solve) {
     row.flips = static_cast<std::int32_t>(
         std::min<std::int64_t>(solve.flips, std::numeric_limits<std::int32_t>::max()));
     row.seconds = static_cast<float>(solve.seconds);
+    row.gauss_bonnet_error = solve.gauss_bonnet_error;
+    row.precision_digits = solve.precision_digits;
     return row;
 }
 

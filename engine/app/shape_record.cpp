@@ -28,6 +28,9 @@ ShapeRecord make_record(const SurfaceMesh& mesh, ShapeDescriptor shape) {
     record.primitive = std::move(shape.primitive);
     record.complete_up_to = shape.complete_up_to;
     record.marking_gap = shape.marking_gap;
+    record.residual_max = shape.accuracy.residual_max;
+    record.gauss_bonnet_error = shape.accuracy.gauss_bonnet_error;
+    record.precision_digits = shape.accuracy.precision_digits;
     record.seconds = {shape.seconds.flow, shape.seconds.surface, shape.seconds.spectrum,
                       shape.seconds.coordinates};
     return record;

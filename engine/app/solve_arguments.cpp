@@ -29,6 +29,10 @@ void add_solve_arguments(CLI::App& command, SolveArguments& a) {
     command.add_option("--tolerance", a.tolerance, "On max |K - target|, radians")
         ->capture_default_str()
         ->check(CLI::PositiveNumber);
+    command
+        .add_option("--precision", a.precision,
+                    "auto (double, and 19 or 50 digits where its rounding is too coarse), double, extended")
+        ->capture_default_str();
     command.add_option("--max-iterations", a.max_iterations, "0: 200 Newton steps, 100000 gradient steps")
         ->check(CLI::NonNegativeNumber);
     command.add_option("--target", a.target,
@@ -53,6 +57,9 @@ FlowOptions flow_options(const SolveArguments& a) {
     options.scheme = parse_scheme(a.scheme);
     options.method = parse_method(a.method);
     options.sphere_route = parse_sphere_route(a.sphere);
+    options.precision = parse_precision(a.precision);
+    if (options.precision == Precision::extended && options.scheme != Scheme::vertex_scaling)
+        throw UsageError("--precision extended is for vertex scaling; circle packings are solved in double");
     if (!a.target.empty()) parse_target(a.target, options);
     for (const std::string& cone : a.cones) options.cones.push_back(parse_cone(cone));
     if (!a.boundary.empty()) options.boundary = parse_boundary(a.boundary);
@@ -73,6 +80,7 @@ std::string to_toml(const SolveArguments& a) {
                                                  {"scheme", a.scheme},
                                                  {"method", a.method},
                                                  {"sphere", a.sphere},
+                                                 {"precision", a.precision},
                                                  {"target", a.target},
                                                  {"cones", cones},
                                                  {"boundary", a.boundary},

@@ -17,7 +17,7 @@ namespace ricci::app {
 /// As typed.
 struct SolveArguments {
     std::string mesh, repair, geometry = "auto", scheme = "vertex-scaling", method = "newton",
-                              sphere = "robust", target, boundary, delaunay = "isometric";
+                              sphere = "robust", precision = "auto", target, boundary, delaunay = "isometric";
     std::vector<std::string> cones;
     double tolerance = 1e-10, timeout = 0.0;
     std::int32_t max_iterations = 0;

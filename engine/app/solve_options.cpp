@@ -77,6 +77,11 @@ SweepSolverKind parse_solver(const std::string& text) {
     return parse_name("solver", text, std::array{SweepSolverKind::lanes, SweepSolverKind::newton});
 }
 
+Precision parse_precision(const std::string& text) {
+    return parse_name("precision", text,
+                      std::array{Precision::automatic, Precision::plain, Precision::extended});
+}
+
 bool parse_delaunay(const std::string& text) {
     if (text == "isometric") return true;
     if (text == "none") return false;

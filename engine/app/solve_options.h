@@ -16,6 +16,7 @@ Boundary parse_boundary(const std::string& text);
 SphereRoute parse_sphere_route(const std::string& text);
 std::optional<Geometry> parse_geometry(const std::string& text);  // "auto": unset
 SweepSolverKind parse_solver(const std::string& text);
+Precision parse_precision(const std::string& text);
 bool parse_delaunay(const std::string& text);  // "isometric": true, "none": false
 
 /// "VERTEX:CURVATURE".

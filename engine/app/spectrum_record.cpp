@@ -1,5 +1,6 @@
 #include "engine/app/spectrum_record.h"
 
+#include "engine/app/accuracy_record.h"
 #include "engine/app/console.h"
 #include "engine/app/result_arrays.h"
 
@@ -11,6 +12,7 @@ ResultGroup make_spectrum_group(const std::string& item, const SurfaceSpectrum& 
     group.kind = "spectrum";
     group.status = static_cast<std::uint8_t>(s.status);
     group.attributes = {{"geometry", std::string(name_of(s.geometry))}};
+    add_accuracy(s.accuracy, group);
     if (s.status != Status::converged) return group;
     group.attributes.push_back({"complete_up_to", s.complete_up_to});
     group.attributes.push_back({"relator_error", s.relator_error});
@@ -54,6 +56,7 @@ nlohmann::json spectrum_json(const SurfaceSpectrum& s) {
                              {"relator_error", finite_or_null(s.relator_error)},
                              {"word_error", finite_or_null(s.word_error)},
                              {"unit", s.unit}};
+    add_accuracy(s.accuracy, object);
     for (std::size_t k = 0; k < s.lengths.size(); ++k) {
         const SurfaceGeodesic& g = s.geodesics[s.geodesic[k]];
         object["primitive"].push_back(s.power[k] == 1);

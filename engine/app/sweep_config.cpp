@@ -128,6 +128,7 @@ SweepConfig parse_sweep_config(const std::string& text, const std::string& path)
     solve("max_iterations", c.max_iterations);
     solve("densify", c.densify);
     solve("solver", c.solver);
+    solve("precision", c.precision);
     solve.reject_the_rest();
     TableReader sweep(path, root, "sweep");
     sweep.text("vertices", c.vertices);
@@ -164,6 +165,9 @@ std::string to_toml(const SweepConfig& c, bool only_what_decides_results) {
                               {"densify", c.densify},
                               {"solver", c.solver}}},
         {"sweep", toml::table{{"vertices", c.vertices}, {"resolutions", resolutions}, {"keep", c.keep}}}};
+    // Runs from before there was a choice can be resumed.
+    if (c.precision != "auto" || !only_what_decides_results)
+        root["solve"].as_table()->insert("precision", c.precision);
     // A time-out decides which solves fail, a shard which are done at all.
     toml::table run{{"shard", c.shard}, {"timeout", c.timeout}};
     if (!only_what_decides_results) {
@@ -194,6 +198,9 @@ SweepOptions sweep_options(const SweepConfig& c) {
     options.tolerance = c.tolerance;
     options.max_iterations = c.max_iterations;
     options.solver = parse_solver(c.solver);
+    options.precision = parse_precision(c.precision);
+    if (options.precision == Precision::extended && options.scheme != Scheme::vertex_scaling)
+        throw UsageError("precision extended is for vertex scaling; circle packings are solved in double");
     if (c.lanes < 1 || c.lanes > kLanes)
         throw UsageError(fmt::format("lanes must be 1 to {}, not {}", kLanes, c.lanes));
     options.lanes = c.lanes;

@@ -20,6 +20,7 @@ struct SweepConfig {
     std::int32_t max_iterations = 0;
     bool densify = false;
     std::string solver = "lanes";
+    std::string precision = "auto";
     std::string vertices = "all";                      // all | sample:N[:SEED] | FILE
     std::vector<std::string> resolutions = {"input"};  // face counts or "input"
     std::string keep = "best,worst";                   // none | best | worst | best,worst | all | K

@@ -18,9 +18,13 @@
 namespace ricci::app {
 namespace {
 
-/// What the recomputation may differ by: the stored residual is evaluated in double, where angles at factors
-/// of e^48 carry some 1e-12; a solution at the tolerance 1e-10 stays well below.
+/// What the recomputation may differ by where the stored residual was evaluated in double: angles at factors
+/// of e^48 carry some 1e-12, and solves whose rounding could be more than a tenth of the tolerance are
+/// measured in more digits. Those may differ by that tenth.
 constexpr double kResidualSlack = 1e-9;
+double residual_slack(int precision_digits, double tolerance) {
+    return precision_digits > 16 ? std::max(2e-11, 0.1 * tolerance) : kResidualSlack;
+}
 constexpr double kDistortionSlack = 1e-9;  // relative
 
 /// How the sweep was solved, from the stored configuration.
@@ -35,18 +39,25 @@ SweepOptions options_of(const StoredRun& run) {
     options.boundary = parse_boundary(boundary.empty() ? "geodesic" : boundary);
     options.delaunay = parse_delaunay(text("delaunay", "isometric"));
     options.densify = root["solve"]["densify"].value_or(false);
+    options.tolerance = root["solve"]["tolerance"].value_or(options.tolerance);
     const std::string cone = text("cone_curvature", "");
     if (!cone.empty()) options.cone_curvature = parse_curvature(cone);
     return options;
 }
 
-Recomputed recompute(const SurfaceMesh& mesh, std::span<const double> u, Scheme scheme, Geometry geometry,
-                     Boundary boundary, bool delaunay, double packing_scale) {
-    if (scheme == Scheme::vertex_scaling) return recompute_scaling(mesh, u, geometry, boundary, delaunay);
+/// In more digits where the solve took more.
+int recomputed_digits(int precision_digits) {
+    return precision_digits > 16 ? 50 : 19;
+}
+
+Recomputed recompute(const SurfaceMesh& mesh, ConformalFactor u, Scheme scheme, Geometry geometry,
+                     Boundary boundary, bool delaunay, double packing_scale, int digits) {
+    if (scheme == Scheme::vertex_scaling)
+        return recompute_scaling(mesh, u, geometry, boundary, delaunay, digits);
     std::vector<double> length = mesh.edge_length;
     for (double& l : length) l *= packing_scale;
     const CirclePacking packing = initial_circle_packing(mesh.connectivity, length, geometry, scheme);
-    return recompute_packing(mesh, packing.eta, packing.eps, u, geometry);
+    return recompute_packing(mesh, packing.eta, packing.eps, u.high, geometry);
 }
 
 /// max |K - target| over vertices that are prescribed: all used ones, but not a free boundary.
@@ -62,14 +73,28 @@ double residual(const SurfaceMesh& mesh, const Recomputed& r, std::span<const do
     return largest;
 }
 
-void judge(const Recomputed& r, RecomputedSolution& s) {
+/// Both sums of curvatures carry a rounding per vertex, of the size of the largest.
+double gauss_bonnet_slack(const Recomputed& r) {
+    double sum = 0.0;
+    for (const double k : r.curvature) sum += 1.0 + std::abs(k);
+    return 1e-9 + 1e-14 * sum;
+}
+
+void judge(const Recomputed& r, double slack, RecomputedSolution& s) {
     s.flips = r.isometric_flips + r.ptolemy_flips;
+    s.gauss_bonnet_recomputed = r.gauss_bonnet_error;
     s.distortion_recomputed = r.area_distortion;
     if (!r.valid)
         s.message = "a face of the rebuilt metric is no triangle";
-    else if (!(std::abs(s.residual_recomputed - s.residual_stored) <= kResidualSlack))
+    else if (r.non_delaunay > 0)
+        s.message = fmt::format("{} edges of the rebuilt metric are not Delaunay", r.non_delaunay);
+    else if (!(std::abs(s.residual_recomputed - s.residual_stored) <= slack))
         s.message =
             fmt::format("residual is {:.3g}, stored {:.3g}", s.residual_recomputed, s.residual_stored);
+    else if (std::isfinite(s.gauss_bonnet_stored) &&
+             !(std::abs(s.gauss_bonnet_recomputed - s.gauss_bonnet_stored) <= gauss_bonnet_slack(r)))
+        s.message = fmt::format("the Gauss-Bonnet error is {:.3g}, stored {:.3g}", s.gauss_bonnet_recomputed,
+                                s.gauss_bonnet_stored);
     else if (std::isfinite(s.distortion_stored) &&
              !(std::abs(s.distortion_recomputed - s.distortion_stored) <=
                kDistortionSlack * (1.0 + s.distortion_stored)))
@@ -79,6 +104,7 @@ void judge(const Recomputed& r, RecomputedSolution& s) {
 }
 
 RecomputedSolution check_kept(const StoredItem& item, const KeptFactor& kept, const SweepOptions& options) {
+    int precision_digits = 0;
     RecomputedSolution s;
     const StoredSweep& sweep = *item.sweep;
     s.item = item.item.name;
@@ -87,7 +113,12 @@ RecomputedSolution check_kept(const StoredItem& item, const KeptFactor& kept, co
                          kept.vertex);
     s.distortion_stored = kept.area_distortion;
     for (const SweepRow& row : sweep.rows)
-        if (row.vertex == kept.vertex) s.residual_stored = row.residual_max;
+        if (row.vertex == kept.vertex) {
+            s.residual_stored = row.residual_max;
+            s.gauss_bonnet_stored = row.gauss_bonnet_error;
+            precision_digits = row.precision_digits;
+        }
+    s.digits = recomputed_digits(precision_digits);
     if (options.densify) {
         s.message = "solved on a densified mesh, which is not stored: cannot be recomputed";
         return s;
@@ -97,18 +128,20 @@ RecomputedSolution check_kept(const StoredItem& item, const KeptFactor& kept, co
     target[static_cast<std::size_t>(kept.vertex)] =
         options.cone_curvature.value_or(2.0 * std::numbers::pi * item.item.euler_characteristic);
     const Recomputed r = recompute(mesh, kept.conformal_factor, options.scheme, Geometry::euclidean,
-                                   options.boundary, options.delaunay, 1.0);
+                                   options.boundary, options.delaunay, 1.0, s.digits);
     s.residual_recomputed = residual(mesh, r, target, options.boundary);
-    judge(r, s);
+    judge(r, residual_slack(precision_digits, options.tolerance), s);
     return s;
 }
 
-RecomputedSolution check_flow(const StoredItem& item, bool delaunay) {
+RecomputedSolution check_flow(const StoredItem& item, const SweepOptions& options) {
     const FlowRecord& flow = *item.flow;
     RecomputedSolution s;
     s.item = item.item.name;
     s.what = fmt::format("flow ({})", flow.geometry);
     s.residual_stored = flow.residual_max;
+    s.gauss_bonnet_stored = flow.gauss_bonnet_error;
+    s.digits = recomputed_digits(flow.precision_digits);
     s.distortion_stored = std::numeric_limits<double>::quiet_NaN();
     const SurfaceMesh mesh = surface_of(item.item);
     const Geometry geometry = parse_geometry(flow.geometry).value();
@@ -119,10 +152,11 @@ RecomputedSolution check_flow(const StoredItem& item, bool delaunay) {
     for (std::size_t v = 0; v < prescribed.size(); ++v)
         if (boundary == Boundary::free && on_boundary[v]) prescribed[v] = 0.0;
     const double scale = std::exp(initial_log_scale(mesh, prescribed, geometry));
-    const Recomputed r = recompute(mesh, flow.conformal_factor, parse_scheme(flow.scheme), geometry, boundary,
-                                   delaunay, scale);
+    const Recomputed r =
+        recompute(mesh, {flow.conformal_factor, flow.conformal_factor_low}, parse_scheme(flow.scheme),
+                  geometry, boundary, options.delaunay, scale, s.digits);
     s.residual_recomputed = residual(mesh, r, flow.target_curvature, boundary);
-    judge(r, s);
+    judge(r, residual_slack(flow.precision_digits, options.tolerance), s);
     return s;
 }
 
@@ -135,7 +169,7 @@ std::vector<RecomputedSolution> recompute_solutions(const StoredRun& run, int th
         if (item.sweep)
             for (const KeptFactor& kept : item.sweep->kept)
                 jobs.emplace_back([&] { return check_kept(item, kept, options); });
-        if (item.flow) jobs.emplace_back([&] { return check_flow(item, options.delaunay); });
+        if (item.flow) jobs.emplace_back([&] { return check_flow(item, options); });
     }
     std::vector<RecomputedSolution> results(jobs.size());
     with_thread_limit(threads, [&] {

@@ -12,7 +12,9 @@ namespace ricci::app {
 struct RecomputedSolution {
     std::string item, what;  // "best (vertex 17)", "flow", …
     double residual_stored = 0.0, residual_recomputed = 0.0;
-    double distortion_stored = 0.0, distortion_recomputed = 0.0;  // NaN for flows
+    double gauss_bonnet_stored = 0.0, gauss_bonnet_recomputed = 0.0;  // stored: NaN where the file lacks it
+    int digits = 19;                                                  // of the recomputation's arithmetic
+    double distortion_stored = 0.0, distortion_recomputed = 0.0;      // NaN for flows
     std::int64_t flips = 0;
     bool sound = false;
     std::string message;  // why not

@@ -34,24 +34,13 @@ SolveOptions solve_options(const FlowOptions& options, Geometry geometry) {
     return result;
 }
 
-SolveOutcome run(Metric& metric, const CurvatureTarget& target, const FlowOptions& options, Geometry geometry,
-                 std::vector<double>& u) {
-    const SolveOptions solve = solve_options(options, geometry);
-    if (options.method == Method::gradient) return gradient_descent(metric, target, solve, u);
+SolveOutcome run(Metric& metric, const CurvatureTarget& target, const SolveOptions& solve, Method method,
+                 Geometry geometry, std::vector<double>& u, std::vector<double>* low = nullptr) {
+    if (method == Method::gradient) return gradient_descent(metric, target, solve, u);
     const Definiteness definiteness =
         geometry == Geometry::spherical ? Definiteness::indefinite : Definiteness::positive;
     NewtonSolver newton(metric.surface(), target, definiteness, false);
-    return newton.solve(metric, target, solve, u);
-}
-
-/// Mean zero, so that a scale-free solution is one and not a family (thesis section 3.5: sum u_i = 0).
-void centre(const FlowSurface& surface, std::vector<double>& u) {
-    double sum = 0.0, count = 0.0;
-    for (std::size_t v = 0; v < u.size(); ++v) {
-        sum += surface.used[v] ? u[v] : 0.0;
-        count += surface.used[v] ? 1.0 : 0.0;
-    }
-    for (std::size_t v = 0; v < u.size(); ++v) u[v] = surface.used[v] ? u[v] - sum / count : 0.0;
+    return newton.solve(metric, target, solve, u, low);
 }
 
 void store(Metric& metric, const CurvatureTarget& target, FlowResult& result) {
@@ -124,7 +113,7 @@ void flow_through_plane(const SurfaceMesh& mesh, const FlowSurface& surface, con
     SphereResult solved = solve_sphere(surface, sphere);
     result.outcome = std::move(solved.outcome);
     result.message = std::move(solved.message);
-    result.extended_precision = solved.extended_precision;
+    result.precision_digits = solved.extended_precision ? 19 : 16;
     // A solve that ended in the plane has no u for the sphere; the metric shown is then the initial one.
     if (solved.reached_sphere) result.conformal_factor = std::move(solved.u);
     std::unique_ptr<Metric> metric =
@@ -137,7 +126,7 @@ void flow_through_plane(const SurfaceMesh& mesh, const FlowSurface& surface, con
     store(*metric, target, result);
 }
 
-/// Vertex scaling; falls back to extended precision where double stalls.
+/// Vertex scaling; in more digits where double does not suffice.
 void flow_by_scaling(const SurfaceMesh& mesh, const FlowOptions& options, FlowResult& result) {
     const FlowSurface surface = make_flow_surface(mesh, result.boundary != Boundary::free, options.delaunay);
     const CurvatureTarget target = make_target(surface, options, result.geometry, result.boundary);
@@ -159,49 +148,31 @@ void flow_by_scaling(const SurfaceMesh& mesh, const FlowOptions& options, FlowRe
     }
     if (goes_through_plane(surface, options, result))
         return flow_through_plane(mesh, surface, target, options, result);
-    result.outcome = run(*metric, target, options, result.geometry, u);
-    const Status status = result.outcome.status;
-    // Precision helps at the rounding floor, not where a non-convex energy has no descent.
-    const bool precision_helps = result.geometry != Geometry::spherical || result.outcome.residual_max < 1e-6;
-    const bool stuck = status == Status::stalled || status == Status::factorization_failed ||
-                       status == Status::not_finite || status == Status::inadmissible_metric;
-    if (stuck && precision_helps) {
-        // Evaluate lengths and angles in long double, from the last good u.
-        auto extended =
-            std::make_unique<ScaledMetric<long double>>(surface, result.geometry, options.parallel);
-        std::vector<double> v = u;
-        const SolveOutcome second = run(*extended, target, options, result.geometry, v);
-        if (second.status == Status::converged || second.residual_max < result.outcome.residual_max) {
-            const std::int32_t before = result.outcome.iterations;
-            std::vector<IterationLog> log = std::move(result.outcome.log);
-            const double seconds = log.empty() ? 0.0 : log.back().seconds;
-            for (IterationLog line : second.log) {
-                line.iteration += before;
-                line.seconds += seconds;
-                line.flips += result.outcome.flips;
-                if (line.iteration > before) log.push_back(line);
-            }
-            const std::int64_t flips = result.outcome.flips + second.flips;
-            result.outcome = second;
-            result.outcome.iterations += before;
-            result.outcome.flips = flips;
-            result.outcome.log = std::move(log);
-            result.extended_precision = true;
-            u = std::move(v);
-            metric = std::move(extended);
-        }
-    }
-    if (target.scale_free) {
-        centre(surface, u);
-        metric->move_to(u);
-        metric->evaluate(false);
-        result.outcome.residual_max = residual_max(metric->curvature(), target);
-        result.outcome.flips = std::max(result.outcome.flips, metric->flips());
-        if (result.outcome.status == Status::converged && result.outcome.residual_max > options.tolerance)
-            result.outcome.status = Status::stalled;
-    }
+    ScalingSolve solve;
+    solve.u = std::move(u);
+    const ScalingProblem problem{
+        &mesh,
+        &surface,
+        result.geometry,
+        &target,
+        options.parallel,
+        solve_options(options, result.geometry),
+        options.precision,
+        options.tolerated_rounding > 0.0 ? options.tolerated_rounding : 0.1 * options.tolerance,
+        [&](Metric& at, const CurvatureTarget& aim, const SolveOptions& level, std::vector<double>& factor,
+            std::vector<double>* low) {
+            return run(at, aim, level, options.method, result.geometry, factor, low);
+        }};
+    solve_by_scaling(problem, *metric, solve);
+    u = std::move(solve.u);
+    result.conformal_factor_low = std::move(solve.low);
+    result.outcome = std::move(solve.outcome);
+    result.precision_digits = solve.digits;
     result.message = reason(result.outcome.status, result.geometry, options);
-    store(*metric, target, result);
+    if (result.outcome.status == Status::converged && solve.rounding_floor > options.tolerance)
+        result.message = fmt::format("the rounding of {} digits may hide a residual of {:.2g}", solve.digits,
+                                     solve.rounding_floor);
+    store(*solve.metric, target, result);
 }
 
 void flow_by_packing(const SurfaceMesh& mesh, const FlowOptions& options, FlowResult& result) {
@@ -242,7 +213,8 @@ void flow_by_packing(const SurfaceMesh& mesh, const FlowOptions& options, FlowRe
         return asked > 4 && asked % every == 0 && violated(u) ? std::optional(Status::inadmissible_target)
                                                               : std::nullopt;
     };
-    result.outcome = run(metric, target, watched, result.geometry, u);
+    result.outcome =
+        run(metric, target, solve_options(watched, result.geometry), options.method, result.geometry, u);
     const Status status = result.outcome.status;
     if (status != Status::converged && status != Status::inadmissible_target) {
         result.message = reason(status, result.geometry, options);
@@ -267,6 +239,10 @@ Geometry resolve_geometry(const FlowOptions& options, const Topology& topology) 
     if (options.target || !options.cones.empty()) return Geometry::euclidean;
     if (topology.euler_characteristic < 0) return Geometry::hyperbolic;
     return topology.euler_characteristic == 0 ? Geometry::euclidean : Geometry::spherical;
+}
+
+MetricAccuracy accuracy_of(const FlowResult& result) {
+    return {result.outcome.residual_max, result.gauss_bonnet_error, result.precision_digits};
 }
 
 FlowResult solve_flow(const SurfaceMesh& mesh, const FlowOptions& options) {

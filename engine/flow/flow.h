@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/flow/newton.h"
+#include "engine/flow/precision.h"
 
 namespace ricci {
 
@@ -42,6 +43,10 @@ struct FlowOptions {
     SphereRoute sphere_route = SphereRoute::robust;
     bool delaunay = true;
     double tolerance = 1e-10;
+    Precision precision = Precision::automatic;  // vertex scaling
+    /// More digits are asked for where the rounding of lengths may change the residual by more. 0: a tenth of
+    /// the tolerance.
+    double tolerated_rounding = 0.0;
     std::int32_t max_iterations = 0;  // 0: 200 (Newton), 100000 (gradient)
     bool parallel = true;             // faces in parallel
     std::function<std::optional<Status>()> interrupted;
@@ -52,12 +57,16 @@ struct FlowResult {
     Geometry geometry = Geometry::euclidean;
     Boundary boundary = Boundary::geodesic;
     SolveOutcome outcome;
-    std::string message;              // why, where the status is not converged; notes otherwise
-    bool extended_precision = false;  // double stalled and lengths were evaluated in long double
+    std::string message;        // why, where the status is not converged; notes otherwise
+    int precision_digits = 16;  // decimal digits of the lengths in which the residual was measured: 16
+                                // (double), 19 (long double) or 50
     double gauss_bonnet_error = 0.0;  // |sum K + kappa A - 2 pi chi|
     double area = 0.0;
     std::vector<double> conformal_factor;  // V; 0 for unused vertices. By the robust route to the sphere the
                                            // centre of the vertices, weighted by area, is the sphere's
+    /// V: the factor is the unevaluated sum conformal_factor + conformal_factor_low; empty where the double
+    /// alone has the residual.
+    std::vector<double> conformal_factor_low;
     std::vector<double> target_curvature;  // V
     std::vector<double> curvature;         // V
     std::optional<CirclePacking> packing;  // circle packings: how far the initial metric was off
@@ -65,6 +74,13 @@ struct FlowResult {
     Connectivity triangulation;       // final one (of the double where doubled)
     std::vector<double> edge_length;  // 3F' in the background geometry
 };
+
+/// How far a metric is to be trusted: part of every result made from one.
+struct MetricAccuracy {
+    double residual_max = 0.0, gauss_bonnet_error = 0.0;
+    int precision_digits = 16;  // of the arithmetic in which both were measured
+};
+MetricAccuracy accuracy_of(const FlowResult& result);
 
 Geometry resolve_geometry(const FlowOptions& options, const Topology& topology);
 

@@ -2,11 +2,21 @@
 
 #include <numbers>
 
+#include "kernels/extended.h"
+
 namespace ricci {
 namespace {
 
 std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
+}
+
+/// The lengths of the mirror image: halfedge 3f+k is mirrored to 3(F+f)+(2-k).
+template <class Real>
+void mirror_lengths(std::vector<Real>& logs) {
+    const std::size_t halfedges = logs.size();
+    logs.resize(2 * halfedges);
+    for (std::size_t h = 0; h < halfedges; ++h) logs[halfedges + 3 * (h / 3) + (2 - h % 3)] = logs[h];
 }
 
 }  // namespace
@@ -74,10 +84,7 @@ FlowSurface make_flow_surface(const SurfaceMesh& mesh, bool doubled, bool delaun
     if (surface.doubled) {
         surface.side = 0.5;
         surface.triangulation.connectivity = double_of(mesh.connectivity, surface.orbit);
-        auto& logs = surface.triangulation.log_chord;
-        const std::size_t halfedges = logs.size();
-        logs.resize(2 * halfedges);
-        for (std::size_t h = 0; h < halfedges; ++h) logs[halfedges + 3 * (h / 3) + (2 - h % 3)] = logs[h];
+        mirror_lengths(surface.triangulation.log_chord);
         surface.full_angle.assign(surface.orbit.size(), 2.0 * std::numbers::pi);
     } else {
         surface.orbit.resize(vertices);
@@ -87,6 +94,7 @@ FlowSurface make_flow_surface(const SurfaceMesh& mesh, bool doubled, bool delaun
             surface.full_angle[v] = (surface.boundary[v] ? 1.0 : 2.0) * std::numbers::pi;
         }
     }
+    surface.delaunay = delaunay;
     if (delaunay) {
         DelaunayWorkspace workspace;
         surface.isometric_flips =
@@ -94,5 +102,21 @@ FlowSurface make_flow_surface(const SurfaceMesh& mesh, bool doubled, bool delaun
     }
     return surface;
 }
+
+template <class Real>
+IntrinsicTriangulation<Real> start_triangulation(const SurfaceMesh& mesh, const FlowSurface& surface) {
+    IntrinsicTriangulation<Real> start = intrinsic_triangulation<Real>(mesh);
+    if (surface.doubled) {
+        std::vector<Index> orbit;
+        start.connectivity = double_of(mesh.connectivity, orbit);
+        mirror_lengths(start.log_chord);
+    }
+    DelaunayWorkspace workspace;
+    if (surface.delaunay) make_delaunay<Real>(start, {}, FlipRule::isometric, workspace);
+    return start;
+}
+
+template IntrinsicTriangulation<WideReal> start_triangulation<WideReal>(const SurfaceMesh&,
+                                                                        const FlowSurface&);
 
 }  // namespace ricci

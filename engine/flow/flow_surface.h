@@ -30,6 +30,7 @@ struct FlowSurface {
     Topology topology;                   // of the input
     double side = 1.0;                   // 1, or 1/2 for a double
     bool doubled = false;
+    bool delaunay = true;  // the start is isometric Delaunay
     std::int64_t isometric_flips = 0;
 
     [[nodiscard]] Index vertex_count() const { return static_cast<Index>(used.size()); }
@@ -38,6 +39,10 @@ struct FlowSurface {
 /// Prepares a surface: doubles it where asked (and where it has a boundary), then flips it to isometric
 /// Delaunay in extended precision where asked.
 FlowSurface make_flow_surface(const SurfaceMesh& mesh, bool doubled, bool delaunay);
+
+/// `surface.triangulation` again, from the mesh the surface was made of, in Real (WideReal).
+template <class Real>
+IntrinsicTriangulation<Real> start_triangulation(const SurfaceMesh& mesh, const FlowSurface& surface);
 
 /// The double of a triangulation along its boundary. Faces F … 2F-1 are the mirror images, halfedge 3f+k
 /// mirrored to 3(F+f)+(2-k). Interior vertices get images V, V+1, … in order; `orbit` is filled.

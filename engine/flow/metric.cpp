@@ -1,8 +1,12 @@
 #include "engine/flow/metric.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <type_traits>
+
+#include "kernels/extended.h"
 
 namespace ricci {
 namespace {
@@ -22,6 +26,7 @@ IntrinsicTriangulation<Real> start_of(const FlowSurface& surface) {
     if constexpr (std::is_same_v<Real, double>) {
         return rounded(surface.triangulation);
     } else {
+        static_assert(std::is_same_v<Real, long double>);
         return surface.triangulation;
     }
 }
@@ -58,17 +63,27 @@ bool Metric::fold_curvature(std::span<const Real> total) {
 }
 
 template <class Real>
-ScaledMetric<Real>::ScaledMetric(const FlowSurface& surface, Geometry geometry, bool parallel)
+ScaledMetric<Real>::ScaledMetric(const FlowSurface& surface, Geometry geometry,
+                                 bool parallel) requires(std::is_floating_point_v<Real>)
+    : ScaledMetric(surface, start_of<Real>(surface), geometry, parallel) {}
+
+template <class Real>
+ScaledMetric<Real>::ScaledMetric(const FlowSurface& surface, IntrinsicTriangulation<Real> start,
+                                 Geometry geometry, bool parallel)
     : Metric(surface, geometry, parallel),
-      triangulation_(start_of<Real>(surface)),
+      triangulation_(std::move(start)),
       angle_(triangulation_.log_chord.size()),
       total_(surface.orbit.size()),
       face_area_(angle_.size() / 3) {}
 
 template <class Real>
-bool ScaledMetric<Real>::move_to(std::span<const double> u) {
-    for (std::size_t s = 0; s < u_.size(); ++s) u_[s] = u[at(surface_->orbit[s])];
-    const FlipCount count = make_delaunay<Real>(triangulation_, u_, FlipRule::ptolemy, workspace_);
+bool ScaledMetric<Real>::move_to(ConformalFactor u) {
+    for (std::size_t s = 0; s < u_.size(); ++s) u_[s] = u.high[at(surface_->orbit[s])];
+    if constexpr (!std::is_same_v<Real, double>) {
+        low_.resize(u.low.empty() ? 0 : u_.size());
+        for (std::size_t s = 0; s < low_.size(); ++s) low_[s] = u.low[at(surface_->orbit[s])];
+    }
+    const FlipCount count = make_delaunay<Real>(triangulation_, factor(), FlipRule::ptolemy, workspace_);
     flips_ += count.flips;
     touched_faces_.insert(touched_faces_.end(), workspace_.touched_faces.begin(),
                           workspace_.touched_faces.end());
@@ -92,29 +107,53 @@ void ScaledMetric<Real>::restore() {
 
 template <class Real>
 bool ScaledMetric<Real>::evaluate(bool derivatives) {
-    const ScaledChords<Real> chords{triangulation_.connectivity.tail, triangulation_.log_chord, u_};
-    FaceFields<Real> fields{angle_, {}, {}, face_area_};
+    const ScaledChords<Real> chords{triangulation_.connectivity.tail, triangulation_.log_chord, factor()};
+    FaceFields<TriangleReal<Real>> fields{angle_, {}, {}, face_area_};
     if (derivatives) {
         fields.off = off_;
         fields.diagonal = diagonal_;
     }
     const std::int64_t broken = evaluate_faces<Real>(geometry_, chords, fields, parallel_);
-    sum_corners<Real>(triangulation_.connectivity.tail, angle_, total_);
-    area_ = surface_->side * sum_of<Real>(face_area_);
-    return fold_curvature<Real>(total_) && broken == 0;
+    sum_corners<TriangleReal<Real>>(triangulation_.connectivity.tail, angle_, total_);
+    area_ = surface_->side * sum_of<TriangleReal<Real>>(face_area_);
+    return fold_curvature<TriangleReal<Real>>(total_) && broken == 0;
+}
+
+template <class Real>
+int ScaledMetric<Real>::digits() const {
+    return std::is_same_v<Real, double> ? 16 : (std::is_same_v<Real, long double> ? 19 : 50);
+}
+
+template <class Real>
+double ScaledMetric<Real>::rounding_floor() const {
+    // A chord's logarithm has gone through the flips of its neighbourhood: some ten roundings.
+    constexpr double kRoundings = 16.0;
+    double largest = 0.0;
+    for (std::size_t h = 0; h < off_.size(); ++h) {
+        const auto i = at(triangulation_.connectivity.tail[h]);
+        const double size =
+            std::abs(static_cast<double>(triangulation_.log_chord[h])) + std::abs(u_[i]) + 1.0;
+        largest = std::max(largest, std::abs(off_[h]) * size);
+    }
+    // Wider numbers: u is the sum of two doubles.
+    const double epsilon = std::max(static_cast<double>(std::numeric_limits<Real>::epsilon()), 0x1p-106);
+    return kRoundings * epsilon * largest;
 }
 
 template <class Real>
 std::vector<double> ScaledMetric<Real>::edge_lengths() const {
+    using Length = TriangleReal<Real>;
     const Connectivity& c = triangulation_.connectivity;
     std::vector<double> length(c.tail.size());
     for (Index h = 0; h < c.halfedge_count(); ++h) {
-        const Real sum = Real(u_[at(c.tail[at(h)])]) + Real(u_[at(c.head(h))]);
-        const Real chord = std::exp(triangulation_.log_chord[at(h)] + Real(0.5) * sum);
-        const Real value = geometry_ == Geometry::euclidean
-                               ? chord
-                               : (geometry_ == Geometry::hyperbolic ? Real(2) * std::asinh(chord / Real(2))
-                                                                    : Real(2) * std::asin(chord / Real(2)));
+        const Real sum = factor().template at<Real>(c.tail[at(h)]) + factor().template at<Real>(c.head(h));
+        const Real log_chord = triangulation_.log_chord[at(h)] + Real(0.5) * sum;
+        const Length chord = std::exp(static_cast<Length>(log_chord));
+        const Length value =
+            geometry_ == Geometry::euclidean
+                ? chord
+                : (geometry_ == Geometry::hyperbolic ? Length(2) * std::asinh(chord / Length(2))
+                                                     : Length(2) * std::asin(chord / Length(2)));
         length[at(h)] = static_cast<double>(value);
     }
     return length;
@@ -129,6 +168,15 @@ void ScaledMetric<Real>::reset(const IntrinsicTriangulation<Real>& start) {
 
 template class ScaledMetric<double>;
 template class ScaledMetric<long double>;
+template class ScaledMetric<WideReal>;
+
+std::unique_ptr<Metric> make_scaled_metric(const SurfaceMesh& mesh, const FlowSurface& surface,
+                                           Geometry geometry, bool parallel, int digits) {
+    if (digits <= 16) return std::make_unique<ScaledMetric<double>>(surface, geometry, parallel);
+    if (digits <= 19) return std::make_unique<ScaledMetric<long double>>(surface, geometry, parallel);
+    return std::make_unique<ScaledMetric<WideReal>>(surface, start_triangulation<WideReal>(mesh, surface),
+                                                    geometry, parallel);
+}
 
 PackedMetric::PackedMetric(const FlowSurface& surface, const CirclePacking& packing, Geometry geometry,
                            bool parallel)
@@ -145,8 +193,8 @@ PackedCircles PackedMetric::circles() const {
     return {connectivity().tail, eta_, eps_, u_};
 }
 
-bool PackedMetric::move_to(std::span<const double> u) {
-    for (std::size_t s = 0; s < u_.size(); ++s) u_[s] = u[at(surface_->orbit[s])];
+bool PackedMetric::move_to(ConformalFactor u) {
+    for (std::size_t s = 0; s < u_.size(); ++s) u_[s] = u.high[at(surface_->orbit[s])];
     return true;
 }
 

@@ -61,6 +61,13 @@ void step_along(const std::vector<double>& u, const CurvatureTarget& target,
         if (target.unknown[v] >= 0) result[v] += step * direction[at(target.unknown[v])];
 }
 
+/// The same where u has a low part; `result` and `result_low` hold u.
+void step_along_split(const CurvatureTarget& target, std::span<const double> direction, double step,
+                      std::vector<double>& result, std::vector<double>& result_low) {
+    for (std::size_t v = 0; v < result.size(); ++v)
+        if (target.unknown[v] >= 0) add_to(step * direction[at(target.unknown[v])], result[v], result_low[v]);
+}
+
 /// Where a step is compared with: the state it starts from.
 struct Standing {
     double slope, residual, square;
@@ -82,6 +89,14 @@ std::vector<Index> unknowns_of_surface(const FlowSurface& surface, const Curvatu
 }
 
 }  // namespace
+
+void add_to(double value, double& high, double& low) {
+    const double sum = high + value, back = sum - high;
+    const double error = (high - (sum - back)) + (value - back);
+    const double rest = low + error;
+    high = sum + rest;
+    low = rest - (high - sum);
+}
 
 double residual_max(std::span<const double> curvature, const CurvatureTarget& target) {
     double largest = 0.0;
@@ -223,15 +238,16 @@ void NewtonSolver::prepare_first_factor(Metric& metric, const std::vector<double
 }
 
 SolveOutcome NewtonSolver::solve(Metric& metric, const CurvatureTarget& target, const SolveOptions& options,
-                                 std::vector<double>& u) {
+                                 std::vector<double>& u, std::vector<double>* low) {
     SolveOutcome outcome;
+    const auto here = [&] { return low ? ConformalFactor(u, *low) : ConformalFactor(u); };
     Recorder recorder(outcome, options);
     const auto finish = [&](Status status) {
         outcome.status = status;
         outcome.flips = metric.flips();
         return outcome;
     };
-    if (!metric.move_to(u)) return finish(Status::internal_error);
+    if (!metric.move_to(here())) return finish(Status::internal_error);
     if (!metric.evaluate(true)) {
         outcome.residual_max = residual_max(metric.curvature(), target);
         return finish(std::isfinite(outcome.residual_max) ? Status::inadmissible_metric : Status::not_finite);
@@ -244,7 +260,7 @@ SolveOutcome NewtonSolver::solve(Metric& metric, const CurvatureTarget& target, 
     for (std::int32_t iteration = 1;; ++iteration) {
         if (residual <= options.tolerance) return finish(Status::converged);
         if (iteration > options.max_iterations) return finish(Status::max_iterations);
-        if (no_progress >= 3) return finish(Status::stalled);
+        if (no_progress >= options.patience) return finish(Status::stalled);
         if (options.interrupted) {
             if (const auto status = options.interrupted()) return finish(*status);
         }
@@ -257,9 +273,18 @@ SolveOutcome NewtonSolver::solve(Metric& metric, const CurvatureTarget& target, 
         bool accepted = false;
         metric.save();
         for (int attempt = 0; attempt < 50; ++attempt) {
-            step_along(u, target, direction_, step, trial_);
+            ConformalFactor trial;
+            if (low) {
+                trial_ = u;
+                trial_low_ = *low;
+                step_along_split(target, direction_, step, trial_, trial_low_);
+                trial = {trial_, trial_low_};
+            } else {
+                step_along(u, target, direction_, step, trial_);
+                trial = trial_;
+            }
             // A step so long that the flips do not end is too long.
-            accepted = metric.move_to(trial_) && metric.evaluate(true) &&
+            accepted = metric.move_to(trial) && metric.evaluate(true) &&
                        acceptable(metric, target, direction_, before, step, options.convex);
             if (accepted) break;
             metric.restore();
@@ -267,13 +292,15 @@ SolveOutcome NewtonSolver::solve(Metric& metric, const CurvatureTarget& target, 
         }
         if (!accepted) {
             // Leave the metric where u is, so that callers see the last accepted state.
-            if (!metric.move_to(u) || !metric.evaluate(true)) return finish(Status::internal_error);
+            if (!metric.move_to(here()) || !metric.evaluate(true)) return finish(Status::internal_error);
             return finish(Status::stalled);
         }
         std::swap(u, trial_);
+        if (low) std::swap(*low, trial_low_);
         const double reached = residual_max(metric.curvature(), target);
         // Against the best so far: at the rounding floor the residual itself goes up and down for ever.
-        no_progress = reached > 0.5 * best && best < 1e-6 ? no_progress + 1 : 0;
+        const bool halved = reached <= 0.5 * best;
+        no_progress = !halved && best < std::max(1e-6, metric.rounding_floor()) ? no_progress + 1 : 0;
         best = std::min(best, reached);
         residual = reached;
         recorder.record(iteration, residual, step, metric.flips());

@@ -41,6 +41,9 @@ struct SolveOptions {
     /// gradients with the last factor as preconditioner where a few back-solves suffice, which is cheaper
     /// than a factorisation.
     bool factorize_always = false;
+    /// Steps at the rounding floor (or below 1e-6) that do not halve the residual, until the solve has
+    /// stalled.
+    std::int32_t patience = 3;
     /// Asked between steps; a status (timeout, cancelled) ends the solve.
     std::function<std::optional<Status>()> interrupted;
     std::function<void(const IterationLog&)> progress;
@@ -73,9 +76,11 @@ class NewtonSolver {
     [[nodiscard]] std::span<const Index> ordering() const { return solver_->ordering(); }
 
     /// Solves K(u) = target from `u` (V), which becomes the solution. `metric` must stand at the start
-    /// triangulation. At an unsuccessful end `u` is the last accepted iterate.
+    /// triangulation. At an unsuccessful end `u` is the last accepted iterate. `low` (V, or null): u is the
+    /// unevaluated sum u + low, for metrics of more digits; a step is then still a double, and the steps add
+    /// up.
     SolveOutcome solve(Metric& metric, const CurvatureTarget& target, const SolveOptions& options,
-                       std::vector<double>& u);
+                       std::vector<double>& u, std::vector<double>* low = nullptr);
 
     /// Factorises the Hessian at `u` once; later solves that start at the same `u` use it for their first
     /// step.
@@ -102,7 +107,7 @@ class NewtonSolver {
     bool factor_is_near_ = false;  // solver_ holds an unshifted factor of this solve
     ConjugateGradient conjugate_gradient_;
     Index pinned_ = -1;  // unknown held during a scale-free solve
-    std::vector<double> values_, rhs_, direction_, trial_;
+    std::vector<double> values_, rhs_, direction_, trial_, trial_low_;
 };
 
 /// Gradient descent du/dt = target - K (thesis section 4.3.1, equation 30, with u = log gamma) by explicit
@@ -110,6 +115,9 @@ class NewtonSolver {
 /// it turns.
 SolveOutcome gradient_descent(Metric& metric, const CurvatureTarget& target, const SolveOptions& options,
                               std::vector<double>& u);
+
+/// Adds `value` to the unevaluated sum high + low (Knuth's two-sum): exact but for the rounding of low.
+void add_to(double value, double& high, double& low);
 
 /// max |K - target| over the vertices with an unknown.
 double residual_max(std::span<const double> curvature, const CurvatureTarget& target);

@@ -171,6 +171,10 @@ void LaneSolver::finish(Lane& lane, const LaneStream& stream, bool converged,
     solve.converged = converged;
     solve.interrupted = interrupted;
     solve.residual_max = lane.residual;
+    double change = 0.0;
+    for (const LaneRow<double>& row : residual_) change += row.lane[static_cast<std::size_t>(lane.index)];
+    solve.gauss_bonnet_error =
+        std::abs(surface_->gauss_bonnet_excess + options_.cone_curvature - surface_->side * change);
     solve.steps = lane.steps;
     solve.patch_steps = lane.region.newton_steps();
     solve.flips = lane.region.flips();

@@ -29,8 +29,9 @@ struct LaneSolve {
     bool converged = false;  // else: `conformal_factor` is where it stood; somebody else must go on
     std::optional<Status> interrupted;
     double residual_max = 0.0;
-    int steps = 0;        // back-solves
-    int patch_steps = 0;  // Newton steps on the patch
+    double gauss_bonnet_error = 0.0;  // |sum K - 2 pi chi|, K as measured
+    int steps = 0;                    // back-solves
+    int patch_steps = 0;              // Newton steps on the patch
     std::int64_t flips = 0;
     std::vector<double> conformal_factor;  // V; mean zero where the solution is scale-free
 };

@@ -1,6 +1,7 @@
 #include "engine/lanes/lane_surface.h"
 
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "engine/flow/hessian.h"
@@ -97,6 +98,11 @@ std::unique_ptr<const LaneSurface> make_lane_surface(const FlowSurface& surface,
     for (std::size_t r = 0; r < at(s->unknowns); ++r) {
         const auto v = at(s->vertex_of_row[r]);
         s->residual[r] = (target.curvature[v] - metric.curvature()[v]) / s->side;
+    }
+    s->gauss_bonnet_excess = -2.0 * std::numbers::pi * surface.topology.euler_characteristic;
+    for (std::size_t r = 0; r < at(s->rows()); ++r) {
+        const auto v = at(s->vertex_of_row[r]);
+        s->gauss_bonnet_excess += r < at(s->unknowns) ? target.curvature[v] : metric.curvature()[v];
     }
 
     std::vector<Index> row_of(surface.orbit.size());

@@ -23,7 +23,10 @@ struct LaneSurface {
     Index pinned_row = -1;             // held during a back-solve where the solution is scale-free
     bool scale_free = false;
     double side = 1.0;             // as in FlowSurface
-    std::vector<double> residual;  // rows: (target - K) / side at u = 0, without a cone
+    std::vector<double> residual;  // rows: (target - K) / side at u = 0, without a cone; 0 where u is fixed
+    /// Targets, plus curvatures at u = 0 where u is fixed, minus 2 pi chi: what Gauss-Bonnet wants the cone
+    /// and the change of angles to make up for.
+    double gauss_bonnet_excess = 0.0;
 
     Connectivity triangulation;       // tails are rows
     std::vector<double> chord;        // 3F, at u = 0

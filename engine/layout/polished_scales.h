@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "engine/layout/extended.h"
 #include "engine/layout/final_metric.h"
+#include "kernels/extended.h"
 
 namespace ricci {
 

@@ -1,8 +1,8 @@
 // A coarse surface in fifty digits, for products of many steps.
 #pragma once
 
-#include "engine/layout/extended.h"
 #include "engine/shape_space/coarse_surface.h"
+#include "kernels/extended.h"
 
 namespace ricci {
 

@@ -46,6 +46,7 @@ template <class Solve>
 void solve_sharply(const FlowOptions& options, Solve&& solve) {
     FlowOptions sharp = options;
     sharp.tolerance = std::min(options.tolerance, 1e-12);
+    sharp.tolerated_rounding = 0.1 * options.tolerance;
     const Status status = solve(sharp);
     if ((status == Status::stalled || status == Status::max_iterations) &&
         sharp.tolerance < options.tolerance)

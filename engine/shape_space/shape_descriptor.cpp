@@ -27,6 +27,7 @@ double lap(Clock::time_point& last) {
 
 bool converged(ShapeDescriptor& d, const FlowResult& flow) {
     d.status = flow.outcome.status;
+    d.accuracy = accuracy_of(flow);
     d.message = flow.message;
     return d.status == Status::converged;
 }

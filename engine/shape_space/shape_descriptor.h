@@ -28,6 +28,7 @@ struct ShapeSeconds {
 struct ShapeDescriptor {
     Index genus = 0, boundaries = 0;
     Status status = Status::converged;
+    MetricAccuracy accuracy;
     std::string message;  // why, where not converged; else notes (a near-tie in the marking, ...)
     // Closed geodesics up to orientation, powers included, ascending, with multiplicity. Torus: in units of
     // the shortest; annulus: of the core curve; empty for spheres and disks.

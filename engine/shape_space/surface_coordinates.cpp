@@ -60,6 +60,7 @@ void hyperbolic(const SurfaceMesh& mesh, const SurfaceCoordinateOptions& options
         flow = solve_sharply(mesh, options.flow);
     }
     s.status = flow.outcome.status;
+    s.accuracy = accuracy_of(flow);
     s.message = flow.message;
     if (s.status != Status::converged) return;
     if (given) {
@@ -84,6 +85,7 @@ void flat(const SurfaceMesh& mesh, const SurfaceCoordinateOptions& options, Surf
     s.geometry = Geometry::euclidean;
     s.structure = make_sharp_structure(mesh, options.flow, 16);
     s.status = s.structure.flow.outcome.status;
+    s.accuracy = accuracy_of(s.structure.flow);
     s.message = s.structure.flow.message;
     if (s.status != Status::converged) return;
     if (s.genus == 1) {
@@ -105,6 +107,7 @@ void spherical(const SurfaceMesh& mesh, const SurfaceCoordinateOptions& options,
     s.geometry = Geometry::spherical;
     const FlowResult flow = solve_flow(mesh, options.flow);
     s.status = flow.outcome.status;
+    s.accuracy = accuracy_of(flow);
     s.message = flow.message;
     if (s.status != Status::converged) return;
     SphereDescriptor d = make_sphere_descriptor(mesh, flow);

@@ -37,6 +37,7 @@ struct SurfaceCoordinates {
     Index genus = 0, boundaries = 0;
     Geometry geometry = Geometry::hyperbolic;
     Status status = Status::converged;
+    MetricAccuracy accuracy;
     std::string message;
     std::vector<double> coordinates;
     std::vector<std::string> names;

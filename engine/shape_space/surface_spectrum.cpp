@@ -44,6 +44,7 @@ void hyperbolic(const SurfaceMesh& mesh, const SurfaceSpectrumOptions& options, 
         flow = solve_sharply(mesh, options.flow);
     }
     s.status = flow.outcome.status;
+    s.accuracy = accuracy_of(flow);
     s.message = flow.message;
     if (s.status != Status::converged) return;
     const CoarseSurface surface = curves ? coarse_surface_of(mesh, flow, options.flow.delaunay,
@@ -153,6 +154,7 @@ SurfaceSpectrum make_surface_spectrum(const SurfaceMesh& mesh, const SurfaceSpec
     s.geometry = Geometry::euclidean;
     s.structure = make_sharp_structure(mesh, options.flow, 19);
     s.status = s.structure.flow.outcome.status;
+    s.accuracy = accuracy_of(s.structure.flow);
     s.message = s.structure.flow.message;
     if (s.status != Status::converged) return s;
     s.relator_error = s.structure.group.relator_error;

@@ -32,6 +32,7 @@ struct SurfaceSpectrum {
     Index genus = 0, boundaries = 0;
     Geometry geometry = Geometry::hyperbolic;
     Status status = Status::converged;
+    MetricAccuracy accuracy;
     std::string message, unit;
     std::vector<double> lengths;        // ascending, powers included, with multiplicity
     std::vector<Index> power;           // 1: primitive

@@ -100,6 +100,7 @@ class SweepWorker::LaneFeed {
         result.vertex = solve.vertex;
         result.status = solve.interrupted.value_or(Status::converged);
         result.residual_max = solve.residual_max;
+        result.gauss_bonnet_error = solve.gauss_bonnet_error;
         result.newton_iterations = solve.steps;
         result.flips = solve.flips;
         result.seconds = seconds;

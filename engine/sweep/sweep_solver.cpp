@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 
 #include "engine/flow/target.h"
@@ -77,7 +78,7 @@ SweepSurface::SweepSurface(SurfaceMesh mesh, const SweepOptions& options)
     ordering_.assign(ordered.ordering().begin(), ordered.ordering().end());
     if (scaling) {
         start_ = rounded(surface_.triangulation);
-        if (options.solver == SweepSolverKind::lanes)
+        if (options.solver == SweepSolverKind::lanes && options.precision != Precision::extended)
             lane_surface_ = make_lane_surface(surface_, target_, ordering_);
     } else {
         packing_ = initial_circle_packing(mesh_.connectivity, mesh_.edge_length, Geometry::euclidean,
@@ -135,7 +136,6 @@ void SweepWorker::make_newton() {
 void SweepWorker::drop_newton() {
     newton_.reset();
     metric_.reset();
-    extended_.reset();
     packed_.reset();
     target_ = shared_->target_;
 }
@@ -178,6 +178,13 @@ void take(const SolveOutcome& outcome, SweepSolve& result) {
     result.flips += outcome.flips;
 }
 
+/// |sum K - 2 pi chi| as the metric stands, Euclidean.
+double gauss_bonnet_error(const Metric& metric) {
+    const std::span<const double> curvature = metric.curvature();
+    const double total = std::accumulate(curvature.begin(), curvature.end(), 0.0);
+    return std::abs(total - 2.0 * pi * metric.surface().topology.euler_characteristic);
+}
+
 /// Shifts a scale-free solution to mean zero and measures the residual of the very numbers that are stored.
 void settle(Metric& metric, const CurvatureTarget& target, double tolerance, SweepSolve& result) {
     std::vector<double>& u = result.conformal_factor;
@@ -194,34 +201,47 @@ void settle(Metric& metric, const CurvatureTarget& target, double tolerance, Swe
     metric.move_to(u);
     metric.evaluate(false);
     result.residual_max = residual_max(metric.curvature(), target);
+    result.gauss_bonnet_error = gauss_bonnet_error(metric);
     if (result.residual_max > tolerance) result.status = Status::stalled;
 }
 
 }  // namespace
 
 void SweepWorker::solve_scaling(SweepSolve& result, const SolveOptions& options) {
-    std::vector<double>& u = result.conformal_factor;
-    u.assign(target_.curvature.size(), 0.0);
+    ScalingSolve solve;
+    solve.u.assign(target_.curvature.size(), 0.0);
     metric_->reset(shared_->start_);
-    take(newton_->solve(*metric_, target_, options, u), result);
-    if (result.status == Status::converged) settle(*metric_, target_, options.tolerance, result);
-    const bool stuck = result.status == Status::stalled || result.status == Status::factorization_failed ||
-                       result.status == Status::not_finite || result.status == Status::inadmissible_metric;
-    if (stuck) {
-        if (!extended_)
-            extended_ =
-                std::make_unique<ScaledMetric<long double>>(shared_->surface_, Geometry::euclidean, false);
-        extended_->reset(shared_->surface_.triangulation);
-        take(newton_->solve(*extended_, target_, options, u), result);
-        result.extended_precision = true;
-        if (result.status == Status::converged) settle(*extended_, target_, options.tolerance, result);
+    const ScalingProblem problem{
+        &shared_->mesh_,
+        &shared_->surface_,
+        Geometry::euclidean,
+        &target_,
+        false,
+        options,
+        shared_->options_.precision,
+        0.1 * options.tolerance,
+        [&](Metric& metric, const CurvatureTarget& target, const SolveOptions& level, std::vector<double>& u,
+            std::vector<double>* low) { return newton_->solve(metric, target, level, u, low); }};
+    solve_by_scaling(problem, *metric_, solve);
+    take(solve.outcome, result);
+    result.precision_digits = solve.digits;
+    result.gauss_bonnet_error = gauss_bonnet_error(*solve.metric);
+    result.conformal_factor = std::move(solve.u);
+    if (result.status == Status::converged && !solve.low.empty()) {
+        // A sweep stores doubles: a factor that they do not hold is not handed out as one that converged.
+        result.status = Status::stalled;
+        result.message = fmt::format(
+            "converges in {} digits, but not rounded to double: ricci flow --cone stores both parts of u",
+            solve.digits);
+        return;
     }
     if (result.status != Status::converged) {
         result.message =
             fmt::format("residual {:.3g} after {} steps", result.residual_max, result.newton_iterations);
         return;
     }
-    result.area_distortion = area_distortion_of_scaling(shared_->area_, shared_->mesh_.connectivity.tail, u);
+    result.area_distortion =
+        area_distortion_of_scaling(shared_->area_, shared_->mesh_.connectivity.tail, result.conformal_factor);
 }
 
 void SweepWorker::solve_packing(SweepSolve& result, const SolveOptions& options) {

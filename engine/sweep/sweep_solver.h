@@ -28,7 +28,8 @@ struct SweepOptions {
     bool delaunay = true;
     bool densify = false;  // circle packings: refine around the cone and raise its valence first
     double tolerance = 1e-10;
-    std::int32_t max_iterations = 0;  // 0: 200
+    std::int32_t max_iterations = 0;             // 0: 200
+    Precision precision = Precision::automatic;  // of Newton's method, by vertex scaling; extended: no lanes
     SweepSolverKind solver = SweepSolverKind::lanes;
     int lanes = kLanes;  // vertices at a time, 1 … kLanes; the bits do not depend on it
 };
@@ -43,7 +44,8 @@ struct SweepSolve {
     std::int64_t flips = 0;
     /// The worker's time that went into it: where n solves run in lanes, a second counts 1/n for each.
     double seconds = 0.0;
-    bool extended_precision = false;
+    int precision_digits = 16;        // of the lengths in which the residual was measured: 16, 19 or 50
+    double gauss_bonnet_error = 0.0;  // |sum K - 2 pi chi|
     std::string message;
     std::vector<double> conformal_factor;  // V
 };
@@ -132,7 +134,6 @@ class SweepWorker {
     CurvatureTarget target_;
     std::unique_ptr<NewtonSolver> newton_;
     std::unique_ptr<ScaledMetric<double>> metric_;
-    std::unique_ptr<ScaledMetric<long double>> extended_;
     std::unique_ptr<PackedMetric> packed_;
 };
 

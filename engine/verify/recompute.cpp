@@ -4,13 +4,36 @@
 #include <array>
 #include <cmath>
 #include <deque>
-#include <numbers>
+#include <type_traits>
+
+#include "kernels/extended.h"
 
 namespace ricci {
 namespace {
 
-using Real = long double;
-constexpr Real kPi = std::numbers::pi_v<Real>;
+// Of long double or of WideReal, whose own functions are found by their argument.
+using std::abs;
+using std::asin;
+using std::asinh;
+using std::atan;
+using std::exp;
+using std::log;
+using std::sin;
+using std::sinh;
+using std::sqrt;
+using std::tan;
+using std::tanh;
+
+template <class Real>
+Real pi_of() {
+    static const Real value = 4 * atan(Real(1));
+    return value;
+}
+
+template <class Real>
+bool is_finite(const Real& x) {
+    return x - x == Real(0);
+}
 
 std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
@@ -22,49 +45,61 @@ struct Face {
 };
 
 /// An edge by the places where faces use it; `sides` is 1 on a boundary.
+template <class Real>
 struct Edge {
     struct Place {
         Index face, slot;
     };
     std::array<Place, 2> place;
     int sides = 0;
-    Real length = 0;  // at u = 0
+    Real length{0};  // at u = 0
 };
 
+template <class Real>
 struct Complex {
     std::vector<Face> faces;
-    std::vector<Edge> edges;
+    std::vector<Edge<Real>> edges;
     std::vector<Index> original;  // per vertex: vertex of the input
 
     void place(Index edge, Index face, Index slot) {
-        Edge& e = edges[at(edge)];
+        Edge<Real>& e = edges[at(edge)];
         e.place[at(e.sides++)] = {face, slot};
     }
 };
 
 /// Angle opposite `a` by the half-angle tangent; NaN where the triangle does not exist.
-Real euclidean_angle(Real a, Real b, Real c) {
+template <class Real>
+Real euclidean_angle(const Real& a, const Real& b, const Real& c) {
     const Real s = (a + b + c) / 2;
     // s - a and so on from differences of the inputs: b - a is exact where it matters.
     const Real sa = (c + (b - a)) / 2, sb = (c - (b - a)) / 2,
-               sc = b >= a ? (a - (c - b)) / 2 : (b - (c - a)) / 2;
-    return 2 * std::atan(std::sqrt(sb * sc / (s * sa)));
+               sc = b >= a ? Real((a - (c - b)) / 2) : Real((b - (c - a)) / 2);
+    return 2 * atan(Real(sqrt(Real(sb * sc / (s * sa)))));
 }
 
-Real angle(Geometry geometry, Real a, Real b, Real c) {
+template <class Real>
+Real length_of_chord(Geometry geometry, const Real& chord) {
+    if (geometry == Geometry::euclidean) return chord;
+    const Real half = chord / 2;
+    return 2 * (geometry == Geometry::hyperbolic ? Real(asinh(half)) : Real(asin(half)));
+}
+
+template <class Real>
+Real angle(Geometry geometry, const Real& a, const Real& b, const Real& c) {
     if (geometry == Geometry::euclidean) return euclidean_angle(a, b, c);
-    const auto length = [&](Real chord) {
-        return geometry == Geometry::hyperbolic ? 2 * std::asinh(chord / 2) : 2 * std::asin(chord / 2);
+    const Real x = length_of_chord(geometry, a), y = length_of_chord(geometry, b),
+               z = length_of_chord(geometry, c), s = (x + y + z) / 2;
+    const auto f = [&](const Real& t) {
+        return geometry == Geometry::hyperbolic ? Real(sinh(t)) : Real(sin(t));
     };
-    const Real x = length(a), y = length(b), z = length(c), s = (x + y + z) / 2;
-    const auto f = [&](Real t) { return geometry == Geometry::hyperbolic ? std::sinh(t) : std::sin(t); };
-    return 2 * std::atan(std::sqrt(f(s - y) * f(s - z) / (f(s) * f(s - x))));
+    return 2 * atan(Real(sqrt(Real(f(s - y) * f(s - z) / (f(s) * f(s - x))))));
 }
 
-Complex complex_of(const SurfaceMesh& mesh, bool doubled) {
+template <class Real>
+Complex<Real> complex_of(const SurfaceMesh& mesh, bool doubled) {
     const Connectivity& c = mesh.connectivity;
     const Index faces = c.face_count();
-    Complex result;
+    Complex<Real> result;
     for (Index v = 0; v < c.vertex_count; ++v) result.original.push_back(v);
     std::vector<Index> image(at(c.vertex_count), -1);
     for (Index h = 0; h < c.halfedge_count(); ++h) {
@@ -74,17 +109,16 @@ Complex complex_of(const SurfaceMesh& mesh, bool doubled) {
     }
     result.edges.resize(at(c.edge_count));
     for (Index h = 0; h < c.halfedge_count(); ++h) {
-        Real squares = 0;
+        Real squares(0);
         if (mesh.intrinsic()) {
-            squares = static_cast<Real>(mesh.edge_length[at(h)]) * static_cast<Real>(mesh.edge_length[at(h)]);
+            squares = Real(mesh.edge_length[at(h)]) * Real(mesh.edge_length[at(h)]);
         } else {
             for (std::size_t k = 0; k < 3; ++k) {
-                const Real d = static_cast<Real>(mesh.points[at(c.tail[at(h)])][k]) -
-                               static_cast<Real>(mesh.points[at(c.head(h))][k]);
+                const Real d = Real(mesh.points[at(c.tail[at(h)])][k]) - Real(mesh.points[at(c.head(h))][k]);
                 squares += d * d;
             }
         }
-        result.edges[at(c.edge[at(h)])].length = std::sqrt(squares);
+        result.edges[at(c.edge[at(h)])].length = sqrt(squares);
     }
     for (Index f = 0; f < faces; ++f) {
         Face face{};
@@ -113,7 +147,7 @@ Complex complex_of(const SurfaceMesh& mesh, bool doubled) {
             if (result.edges[at(e)].sides == 1 && edge_image[at(e)] < 0) edge_image[at(e)] = e;
             if (edge_image[at(e)] < 0) {
                 edge_image[at(e)] = static_cast<Index>(result.edges.size());
-                Edge copy;
+                Edge<Real> copy;
                 copy.length = result.edges[at(e)].length;
                 result.edges.push_back(copy);
             }
@@ -126,15 +160,25 @@ Complex complex_of(const SurfaceMesh& mesh, bool doubled) {
 }
 
 /// The metric u on a complex and the flips that keep it Delaunay.
+template <class Real>
 class Flipper {
   public:
-    Flipper(Complex& complex, std::vector<Real> u, bool isometric)
-        : complex_(&complex), u_(std::move(u)), isometric_(isometric) {}
+    Flipper(Complex<Real>& complex, const std::vector<Real>& u, bool isometric)
+        : complex_(&complex), isometric_(isometric) {
+        for (const Real& x : u) scale_.push_back(exp(Real(x / 2)));
+    }
 
     [[nodiscard]] Real scaled(Index face, std::size_t slot) const {
         const Face& f = complex_->faces[at(face)];
-        const Real sum = u_[at(f.corner[slot])] + u_[at(f.corner[(slot + 1) % 3])];
-        return complex_->edges[at(f.edge[slot])].length * std::exp(sum / 2);
+        return complex_->edges[at(f.edge[slot])].length * scale_[at(f.corner[slot])] *
+               scale_[at(f.corner[(slot + 1) % 3])];
+    }
+
+    [[nodiscard]] std::int64_t failing() const {
+        std::int64_t count = 0;
+        for (std::size_t e = 0; e < complex_->edges.size(); ++e)
+            count += fails(static_cast<Index>(e)) ? 1 : 0;
+        return count;
     }
 
     /// Flips until done; the number of flips, or -1 where it does not end.
@@ -162,22 +206,25 @@ class Flipper {
   private:
     /// Cosine of the angle opposite slot, which may lie outside [-1, 1] where Ptolemy lengths break the
     /// triangle.
-    [[nodiscard]] Real cosine_opposite(Edge::Place p) const {
+    [[nodiscard]] Real cosine_opposite(typename Edge<Real>::Place p) const {
         const auto k = at(p.slot);
         const Real c = scaled(p.face, k), a = scaled(p.face, (k + 1) % 3), b = scaled(p.face, (k + 2) % 3);
         return (a / b + b / a - (c / a) * (c / b)) / 2;
     }
 
+    /// Cosines that cancel to this are those of a quadrilateral on a circle.
+    static Real tie() { return std::is_same_v<Real, long double> ? Real(1e-16) : Real(1e-40); }
+
     [[nodiscard]] bool fails(Index edge) const {
-        const Edge& e = complex_->edges[at(edge)];
+        const Edge<Real>& e = complex_->edges[at(edge)];
         if (e.sides < 2 || e.place[0].face == e.place[1].face) return false;
-        return cosine_opposite(e.place[0]) + cosine_opposite(e.place[1]) < -Real(1e-16);
+        return cosine_opposite(e.place[0]) + cosine_opposite(e.place[1]) < -tie();
     }
 
     /// Flips and returns the four edges around.
     std::array<Index, 4> flip(Index edge) {
-        Edge& e = complex_->edges[at(edge)];
-        const Edge::Place p = e.place[0], q = e.place[1];
+        Edge<Real>& e = complex_->edges[at(edge)];
+        const typename Edge<Real>::Place p = e.place[0], q = e.place[1];
         const auto pk = at(p.slot), qk = at(q.slot);
         const Face f = complex_->faces[at(p.face)], g = complex_->faces[at(q.face)];
         // p: i -> j, then j -> k, k -> i. q: j -> i, then i -> l, l -> j.
@@ -190,8 +237,8 @@ class Flipper {
         if (isometric_) {
             const Real at_i = euclidean_angle(a, b, c) + euclidean_angle(h, d, c);
             // b^2 + d^2 - 2 b d cos(at_i) without cancellation.
-            const Real s = std::sin(at_i / 2);
-            e.length = std::sqrt((b - d) * (b - d) + 4 * b * d * s * s);
+            const Real s = sin(Real(at_i / 2));
+            e.length = sqrt(Real((b - d) * (b - d) + 4 * b * d * s * s));
         } else {
             e.length = (b * h + d * a) / c;
         }
@@ -207,62 +254,79 @@ class Flipper {
     }
 
     void take_out(Index edge, Index first, Index second) {
-        Edge& e = complex_->edges[at(edge)];
+        Edge<Real>& e = complex_->edges[at(edge)];
         int kept = 0;
         for (int s = 0; s < e.sides; ++s) {
-            const Edge::Place p = e.place[at(s)];
+            const typename Edge<Real>::Place p = e.place[at(s)];
             if (p.face != first && p.face != second) e.place[at(kept++)] = p;
         }
         e.sides = kept;
     }
 
-    Complex* complex_;
-    std::vector<Real> u_;
+    Complex<Real>* complex_;
+    std::vector<Real> scale_;  // e^(u/2)
     bool isometric_;
 };
 
 /// Curvature per input vertex from angles[face][corner] and the full angle of each vertex of the complex.
-void fold(const Complex& complex, const SurfaceMesh& mesh, bool doubled,
+template <class Real>
+void fold(const Complex<Real>& complex, const SurfaceMesh& mesh, bool doubled,
           const std::vector<std::array<Real, 3>>& angles, Recomputed& result) {
     const std::vector<std::uint8_t> on_boundary = boundary_vertices(mesh.connectivity),
                                     used = used_vertices(mesh.connectivity);
-    std::vector<Real> sum(on_boundary.size(), 0);
+    std::vector<Real> sum(on_boundary.size(), Real(0));
     for (std::size_t s = 0; s < complex.original.size(); ++s) {
         const auto v = at(complex.original[s]);
-        sum[v] += on_boundary[v] && !doubled ? kPi : 2 * kPi;
+        sum[v] += (on_boundary[v] && !doubled ? 1 : 2) * pi_of<Real>();
     }
     for (std::size_t f = 0; f < complex.faces.size(); ++f)
         for (std::size_t k = 0; k < 3; ++k) {
             sum[at(complex.original[at(complex.faces[f].corner[k])])] -= angles[f][k];
-            result.valid = result.valid && std::isfinite(angles[f][k]);
+            result.valid = result.valid && is_finite(angles[f][k]);
         }
     result.curvature.resize(sum.size());
     for (std::size_t v = 0; v < sum.size(); ++v)
-        result.curvature[v] = used[v] ? static_cast<double>(doubled ? sum[v] / 2 : sum[v]) : 0.0;
+        result.curvature[v] = used[v] ? static_cast<double>(doubled ? Real(sum[v] / 2) : sum[v]) : 0.0;
 }
 
-Real triangle_area(Real a, Real b, Real c) {
+template <class Real>
+Real triangle_area(const Real& a, const Real& b, const Real& c) {
     std::array<Real, 3> x{a, b, c};
     std::sort(x.begin(), x.end());
     const Real p =
         (x[2] + (x[1] + x[0])) * (x[0] - (x[2] - x[1])) * (x[0] + (x[2] - x[1])) * (x[2] + (x[1] - x[0]));
-    return std::sqrt(std::max(p, Real(0))) / 4;
+    return sqrt(Real(std::max(p, Real(0)))) / 4;
 }
 
+/// Of a triangle of chords, not by its angles: Heron, and L'Huilier's tan(A/4).
+template <class Real>
+Real area_of(Geometry geometry, const Real& a, const Real& b, const Real& c) {
+    if (geometry == Geometry::euclidean) return triangle_area(a, b, c);
+    const Real x = length_of_chord(geometry, a), y = length_of_chord(geometry, b),
+               z = length_of_chord(geometry, c), s = (x + y + z) / 2;
+    const auto t = [&](const Real& length) {
+        const Real half = length / 2;
+        return geometry == Geometry::hyperbolic ? Real(tanh(half)) : Real(tan(half));
+    };
+    return 4 * atan(Real(sqrt(Real(t(s) * t(s - x) * t(s - y) * t(s - z)))));
+}
+
+template <class Real>
 double distortion(const std::vector<Real>& before, const std::vector<Real>& log_ratio) {
-    Real sum_before = 0, sum_after = 0, top = log_ratio[0];
-    for (const Real r : log_ratio) top = std::max(top, r);
+    Real sum_before(0), sum_after(0), top = log_ratio[0];
+    for (const Real& r : log_ratio) top = std::max(top, r);
     for (std::size_t f = 0; f < before.size(); ++f) {
         sum_before += before[f];
-        sum_after += before[f] * std::exp(log_ratio[f] - top);
+        sum_after += before[f] * exp(Real(log_ratio[f] - top));
     }
-    const Real total = std::log(sum_after) + top - std::log(sum_before);
-    Real mean = 0;
-    for (const Real r : log_ratio) mean += (r - total) * (r - total);
-    return static_cast<double>(mean / static_cast<Real>(before.size()));
+    const Real total = log(sum_after) + top - log(sum_before);
+    Real mean(0);
+    for (const Real& r : log_ratio) mean += (r - total) * (r - total);
+    return static_cast<double>(Real(mean / static_cast<double>(before.size())));
 }
 
-std::vector<Real> input_areas(const Complex& complex, std::size_t faces) {
+template <class Real>
+std::vector<Real> input_areas(const Complex<Real>& complex, std::size_t faces) {
     std::vector<Real> areas(faces);
     for (std::size_t f = 0; f < faces; ++f) {
         const auto length = [&](std::size_t k) { return complex.edges[at(complex.faces[f].edge[k])].length; };
@@ -271,50 +335,75 @@ std::vector<Real> input_areas(const Complex& complex, std::size_t faces) {
     return areas;
 }
 
-}  // namespace
+/// Curvature, area and what Gauss-Bonnet says of them, from the chords of every face.
+template <class Real, class Chord>
+void measure(const Complex<Real>& complex, const SurfaceMesh& mesh, bool doubled, Geometry geometry,
+             Chord&& chord, Recomputed& result) {
+    std::vector<std::array<Real, 3>> angles(complex.faces.size());
+    Real area(0);
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        const std::array<Real, 3> l{chord(f, 0), chord(f, 1), chord(f, 2)};
+        for (std::size_t k = 0; k < 3; ++k)
+            angles[f][k] = angle(geometry, l[(k + 1) % 3], l[k], l[(k + 2) % 3]);
+        area += area_of(geometry, l[0], l[1], l[2]);
+    }
+    fold(complex, mesh, doubled, angles, result);
+    double total = 0.0;
+    for (const double k : result.curvature) total += k;
+    const double kappa = curvature_sign(geometry);
+    result.gauss_bonnet_error =
+        std::abs(total + (doubled ? 0.5 : 1.0) * kappa * static_cast<double>(area) -
+                 2.0 * pi_of<double>() * topology_of(mesh.connectivity).euler_characteristic);
+}
 
-Recomputed recompute_scaling(const SurfaceMesh& mesh, std::span<const double> u, Geometry geometry,
-                             Boundary boundary, bool delaunay) {
+template <class Real>
+Recomputed recompute_in(const SurfaceMesh& mesh, ConformalFactor u, Geometry geometry, Boundary boundary,
+                        bool delaunay) {
     Recomputed result;
     const bool has_boundary = topology_of(mesh.connectivity).boundaries > 0;
     const bool doubled = has_boundary && boundary != Boundary::free;
-    Complex complex = complex_of(mesh, doubled);
+    Complex<Real> complex = complex_of<Real>(mesh, doubled);
     const auto faces = static_cast<std::size_t>(mesh.connectivity.face_count());
     const std::vector<Real> areas = input_areas(complex, faces);
     std::vector<Real> log_ratio(faces);
     for (std::size_t f = 0; f < faces; ++f) {
-        Real sum = 0;
-        for (const Index v : complex.faces[f].corner) sum += static_cast<Real>(u[at(v)]);
+        Real sum(0);
+        for (const Index v : complex.faces[f].corner) sum += u.at<Real>(v);
         log_ratio[f] = 2 * sum / 3;
     }
     result.area_distortion = distortion(areas, log_ratio);
     if (delaunay) {
-        result.isometric_flips = Flipper(complex, std::vector<Real>(complex.original.size(), 0), true).run();
+        result.isometric_flips =
+            Flipper<Real>(complex, std::vector<Real>(complex.original.size(), Real(0)), true).run();
     }
     std::vector<Real> factor(complex.original.size());
-    for (std::size_t s = 0; s < factor.size(); ++s) factor[s] = static_cast<Real>(u[at(complex.original[s])]);
-    Flipper flipper(complex, factor, false);
+    for (std::size_t s = 0; s < factor.size(); ++s) factor[s] = u.at<Real>(complex.original[s]);
+    Flipper<Real> flipper(complex, factor, false);
     result.ptolemy_flips = flipper.run();
     result.valid = result.isometric_flips >= 0 && result.ptolemy_flips >= 0;
-    std::vector<std::array<Real, 3>> angles(complex.faces.size());
-    for (std::size_t f = 0; f < complex.faces.size(); ++f)
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto length = [&](std::size_t slot) {
-                return flipper.scaled(static_cast<Index>(f), slot % 3);
-            };
-            angles[f][k] = angle(geometry, length(k + 1), length(k), length(k + 2));
-        }
-    fold(complex, mesh, doubled, angles, result);
+    result.non_delaunay = flipper.failing();
+    for (const Face& f : complex.faces) result.triangles.push_back(f.corner);
+    measure(
+        complex, mesh, doubled, geometry,
+        [&](std::size_t f, std::size_t slot) { return flipper.scaled(static_cast<Index>(f), slot); }, result);
     return result;
+}
+
+}  // namespace
+
+Recomputed recompute_scaling(const SurfaceMesh& mesh, ConformalFactor u, Geometry geometry, Boundary boundary,
+                             bool delaunay, int digits) {
+    return digits <= 19 ? recompute_in<long double>(mesh, u, geometry, boundary, delaunay)
+                        : recompute_in<WideReal>(mesh, u, geometry, boundary, delaunay);
 }
 
 Recomputed recompute_packing(const SurfaceMesh& mesh, std::span<const double> eta,
                              std::span<const double> eps, std::span<const double> u, Geometry geometry) {
+    using Real = long double;
     Recomputed result;
-    const Complex complex = complex_of(mesh, false);
+    const Complex<Real> complex = complex_of<Real>(mesh, false);
     const std::size_t faces = complex.faces.size();
     std::vector<Real> new_areas(faces), log_ratio(faces);
-    std::vector<std::array<Real, 3>> angles(faces);
     const auto chord = [&](std::size_t h, Index i, Index j) {
         const Real ei = static_cast<Real>(eps[at(i)]) * std::exp(2 * static_cast<Real>(u[at(i)]));
         const Real ej = static_cast<Real>(eps[at(j)]) * std::exp(2 * static_cast<Real>(u[at(j)]));
@@ -334,15 +423,16 @@ Recomputed recompute_packing(const SurfaceMesh& mesh, std::span<const double> et
         std::array<Real, 3> l{};
         for (std::size_t k = 0; k < 3; ++k)
             l[k] = chord(3 * f + k, complex.faces[f].corner[k], complex.faces[f].corner[(k + 1) % 3]);
-        for (std::size_t k = 0; k < 3; ++k)
-            angles[f][k] = angle(geometry, l[(k + 1) % 3], l[k], l[(k + 2) % 3]);
-        new_areas[f] = geometry == Geometry::euclidean
-                           ? triangle_area(l[0], l[1], l[2])
-                           : std::abs(kPi - angles[f][0] - angles[f][1] - angles[f][2]);
+        new_areas[f] = area_of(geometry, l[0], l[1], l[2]);
         log_ratio[f] = std::log(new_areas[f] / areas[f]);
     }
     result.area_distortion = distortion(areas, log_ratio);
-    fold(complex, mesh, false, angles, result);
+    measure(
+        complex, mesh, false, geometry,
+        [&](std::size_t f, std::size_t k) {
+            return chord(3 * f + k, complex.faces[f].corner[k], complex.faces[f].corner[(k + 1) % 3]);
+        },
+        result);
     return result;
 }
 

@@ -165,6 +165,10 @@ bool has_link(hid_t parent, const std::string& name) {
     return H5Lexists(parent, name.c_str(), H5P_DEFAULT) > 0;
 }
 
+bool has_attribute(hid_t object, const std::string& name) {
+    return H5Aexists(object, name.c_str()) > 0;
+}
+
 std::vector<std::string> link_names(hid_t group) {
     const std::string where = name_of(group);
     const Handle opened(H5Gopen2(group, ".", H5P_DEFAULT), where);  // a file's identifier is no group's

@@ -94,6 +94,7 @@ Handle open_input(const std::string& path);
 Handle create_group(hid_t parent, const std::string& name);
 Handle open_group(hid_t parent, const std::string& name);
 [[nodiscard]] bool has_link(hid_t parent, const std::string& name);
+[[nodiscard]] bool has_attribute(hid_t object, const std::string& name);
 /// Names of all links, in order of creation where the group tracks it. Throws FileError.
 std::vector<std::string> link_names(hid_t group);
 

@@ -61,6 +61,8 @@ struct SweepRow {
     double residual_max = 0.0;
     std::int32_t flips = 0;
     float seconds = 0.0F;
+    double gauss_bonnet_error = 0.0;     // NaN: not recorded (files of earlier versions)
+    std::int32_t precision_digits = 16;  // of the arithmetic that measured the residual; 0: not recorded
 };
 
 /// A conformal factor worth keeping.
@@ -91,13 +93,15 @@ struct FlowRecord {
     std::uint8_t status = 0;
     std::int32_t newton_iterations = 0, flips = 0;
     double residual_max = 0.0, gauss_bonnet_error = 0.0, seconds = 0.0;
+    std::int32_t precision_digits = 16;    // of the arithmetic that measured the residual; 0: not recorded
     bool doubled = false;                  // the final triangulation is that of the double
     std::vector<double> conformal_factor;  // V
-    std::vector<double> target_curvature;  // V, radians
-    std::vector<double> curvature;         // V, radians
-    std::vector<Triangle> triangles;       // F' of the final triangulation
-    std::vector<Index> twin;               // 3F'
-    std::vector<double> edge_length;       // 3F'
+    std::vector<double> conformal_factor_low;  // V, to be added to it unevaluated; empty: 0
+    std::vector<double> target_curvature;      // V, radians
+    std::vector<double> curvature;             // V, radians
+    std::vector<Triangle> triangles;           // F' of the final triangulation
+    std::vector<Index> twin;                   // 3F'
+    std::vector<double> edge_length;           // 3F'
     std::vector<double> log_residual_max, log_step, log_seconds;  // one per logged iteration
     std::vector<std::int32_t> log_flips;
 };

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <span>
 
 namespace ricci::schema {
@@ -169,6 +170,8 @@ void write_rows(hid_t sweep, const std::vector<SweepRow>& rows, const StatusName
     hdf5::write_array(sweep, "residual_max", column(rows, &SweepRow::residual_max));
     hdf5::write_array(sweep, "flips", column(rows, &SweepRow::flips));
     hdf5::write_array(sweep, "seconds", column(rows, &SweepRow::seconds));
+    hdf5::write_array(sweep, "gauss_bonnet_error", column(rows, &SweepRow::gauss_bonnet_error));
+    hdf5::write_array(sweep, "precision_digits", column(rows, &SweepRow::precision_digits));
 }
 
 std::vector<SweepRow> read_rows(hid_t sweep, const StatusNames& status) {
@@ -190,6 +193,15 @@ std::vector<SweepRow> read_rows(hid_t sweep, const StatusNames& status) {
     read_column(sweep, "residual_max", rows, &SweepRow::residual_max);
     read_column(sweep, "flips", rows, &SweepRow::flips);
     read_column(sweep, "seconds", rows, &SweepRow::seconds);
+    if (hdf5::has_link(sweep, "precision_digits")) {
+        read_column(sweep, "gauss_bonnet_error", rows, &SweepRow::gauss_bonnet_error);
+        read_column(sweep, "precision_digits", rows, &SweepRow::precision_digits);
+    } else {
+        for (SweepRow& row : rows) {
+            row.gauss_bonnet_error = std::numeric_limits<double>::quiet_NaN();
+            row.precision_digits = 0;
+        }
+    }
     return rows;
 }
 
@@ -256,9 +268,12 @@ void write_flow(hid_t group, const FlowRecord& flow, const StatusNames& status) 
     hdf5::write_attribute<double>(group, "residual_max", flow.residual_max);
     hdf5::write_attribute<double>(group, "gauss_bonnet_error", flow.gauss_bonnet_error);
     hdf5::write_attribute<double>(group, "seconds", flow.seconds);
+    hdf5::write_attribute<std::int32_t>(group, "precision_digits", flow.precision_digits);
     hdf5::write_attribute<std::uint8_t>(group, "doubled", static_cast<std::uint8_t>(flow.doubled));
     hdf5::seal(group);
     hdf5::write_array(group, "conformal_factor", flow.conformal_factor);
+    if (!flow.conformal_factor_low.empty())
+        hdf5::write_array(group, "conformal_factor_low", flow.conformal_factor_low);
     hdf5::write_array(group, "target_curvature", flow.target_curvature);
     hdf5::write_array(group, "curvature", flow.curvature);
     write_rows_of(group, "triangles", flow.triangles);
@@ -286,8 +301,13 @@ FlowRecord read_flow(hid_t group, const std::string& item, std::size_t vertex_co
     flow.gauss_bonnet_error = hdf5::read_attribute<double>(group, "gauss_bonnet_error");
     flow.seconds = hdf5::read_attribute<double>(group, "seconds");
     flow.doubled = hdf5::read_attribute<std::uint8_t>(group, "doubled") != 0;
+    flow.precision_digits = hdf5::has_attribute(group, "precision_digits")
+                                ? hdf5::read_attribute<std::int32_t>(group, "precision_digits")
+                                : 0;
     const Shape per_vertex{vertex_count};
     flow.conformal_factor = hdf5::read_array<double>(group, "conformal_factor", per_vertex);
+    if (hdf5::has_link(group, "conformal_factor_low"))
+        flow.conformal_factor_low = hdf5::read_array<double>(group, "conformal_factor_low", per_vertex);
     flow.target_curvature = hdf5::read_array<double>(group, "target_curvature", per_vertex);
     flow.curvature = hdf5::read_array<double>(group, "curvature", per_vertex);
     flow.triangles = read_rows_of<Triangle>(group, "triangles", std::nullopt);

@@ -155,6 +155,11 @@ void write_bucket(hid_t buckets, const Type& type, const Rows& rows, const Statu
     write_lengths(group, rows);
     rows.column<double>(group, "complete_up_to", [](const IndexEntry& e) { return e.shape.complete_up_to; });
     rows.column<double>(group, "marking_gap", [](const IndexEntry& e) { return e.shape.marking_gap; });
+    rows.column<double>(group, "residual_max", [](const IndexEntry& e) { return e.shape.residual_max; });
+    rows.column<double>(group, "gauss_bonnet_error",
+                        [](const IndexEntry& e) { return e.shape.gauss_bonnet_error; });
+    rows.column<std::int32_t>(group, "precision_digits",
+                              [](const IndexEntry& e) { return e.shape.precision_digits; });
     std::vector<double> seconds;
     for (const IndexEntry* e : rows.entries)
         seconds.insert(seconds.end(), e->shape.seconds.begin(), e->shape.seconds.end());

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "io/store/schema.h"
@@ -65,6 +66,22 @@ void read_column(hid_t group, const char* name, std::vector<IndexEntry>& entries
     for (std::size_t i = 0; i < entries.size(); ++i) set(entries[i].shape, values[i]);
 }
 
+void read_accuracy(hid_t group, std::vector<IndexEntry>& entries) {
+    if (!hdf5::has_link(group, "precision_digits")) {
+        for (IndexEntry& entry : entries) {
+            entry.shape.residual_max = entry.shape.gauss_bonnet_error =
+                std::numeric_limits<double>::quiet_NaN();
+            entry.shape.precision_digits = 0;
+        }
+        return;
+    }
+    read_column<double>(group, "residual_max", entries, [](ShapeRecord& s, double v) { s.residual_max = v; });
+    read_column<double>(group, "gauss_bonnet_error", entries,
+                        [](ShapeRecord& s, double v) { s.gauss_bonnet_error = v; });
+    read_column<std::int32_t>(group, "precision_digits", entries,
+                              [](ShapeRecord& s, std::int32_t v) { s.precision_digits = v; });
+}
+
 void read_lengths(hid_t group, std::vector<IndexEntry>& entries) {
     const auto lengths = hdf5::read_array<double>(group, "lengths", std::nullopt);
     const auto primitive = hdf5::read_array<std::uint8_t>(group, "primitive", Shape{lengths.size()});
@@ -116,6 +133,7 @@ void read_details(hid_t group, const IndexBucket& bucket, const StatusNames& sta
     read_column<double>(group, "complete_up_to", entries,
                         [](ShapeRecord& s, double v) { s.complete_up_to = v; });
     read_column<double>(group, "marking_gap", entries, [](ShapeRecord& s, double v) { s.marking_gap = v; });
+    read_accuracy(group, entries);
     read_lengths(group, entries);
     read_resolutions(group, bucket.fingerprint_size, bucket.coordinate_count, entries);
 }

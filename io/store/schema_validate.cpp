@@ -126,6 +126,8 @@ void require_valid(const FlowRecord& flow, std::size_t vertex_count, const Statu
     const auto fits = [&](const std::vector<double>& values) { return values.size() == vertex_count; };
     require(fits(flow.conformal_factor) && fits(flow.target_curvature) && fits(flow.curvature), flow.item,
             "a field of the flow has not V values");
+    require(flow.conformal_factor_low.empty() || fits(flow.conformal_factor_low), flow.item,
+            "conformal_factor_low has not V values");
     const std::size_t halfedges = 3 * flow.triangles.size();
     require(flow.twin.size() == halfedges && flow.edge_length.size() == halfedges, flow.item,
             "the flow's triangulation has not 3F twins and edge lengths");

@@ -33,6 +33,10 @@ struct ShapeRecord {
     std::vector<double> lengths;          // ascending
     std::vector<std::uint8_t> primitive;  // one per length
     double complete_up_to = 0.0, marking_gap = 0.0;
+    // Of the metric it was described from: as in results. NaN and 0 where files of earlier versions lack
+    // them.
+    double residual_max = 0.0, gauss_bonnet_error = 0.0;
+    std::int32_t precision_digits = 16;
     std::array<double, 4> seconds{};           // flow, surface, spectrum, coordinates
     std::vector<ShapeResolution> resolutions;  // those compared, the finest included; or empty
 };

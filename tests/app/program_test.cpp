@@ -1,6 +1,7 @@
 // The program as a whole: exit status, what it writes, determinism, resuming, verification.
 #include "tests/support/program.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 
 #include "io/mesh/mesh_file.h"
 #include "io/store/run_store.h"
+#include "tests/support/random_targets.h"
 #include "tests/support/test_data.h"
 
 namespace ricci {
@@ -319,6 +321,56 @@ TEST(Program, ShardsCoverEveryVertexOnce) {
     const StoredRun run = read_run(folder / "s.h5");
     for (const SweepRow& row : run.items.at(0).sweep->rows) all.push_back(row.vertex);
     EXPECT_EQ(seen, all);
+}
+
+TEST(Program, MoreDigitsAreStoredAndVerified) {
+    const TemporaryFolder folder;
+    const std::string mesh = folder / "sphere.off";
+    ASSERT_EQ(run_ricci(folder, {"generate", "sphere", "--faces", "2000", "--jitter", "0.3", "--seed", "1",
+                                 "-o", mesh, "-q"})
+                  .status,
+              0);
+    std::string lines;
+    for (const double k :
+         testing::random_target(load_mesh(mesh).components.front(), testing::TargetDraw::random, 3))
+        lines += fmt::format("{}\n", k);
+    write_text(folder / "target.txt", lines);
+    const Words flow = {"flow", mesh, "--target", folder / "target.txt", "--json"};
+    const auto with = [&](Words more) {
+        Words words = flow;
+        words.insert(words.end(), more.begin(), more.end());
+        return run_ricci(folder, words);
+    };
+    const ProgramResult plain = with({"--precision", "double"});
+    EXPECT_EQ(plain.status, 1);
+    EXPECT_EQ(objects(plain.out).at(0)["status"], "stalled");
+    EXPECT_EQ(objects(plain.out).at(0)["precision_digits"], 16);
+    const ProgramResult solved = with({"-o", folder / "f.h5"});
+    EXPECT_EQ(solved.status, 0) << solved.err;
+    const auto object = objects(solved.out).at(0);
+    EXPECT_EQ(object["status"], "converged");
+    EXPECT_GT(object["precision_digits"], 16);
+    EXPECT_EQ(object["extended_precision"], true);
+    EXPECT_LE(object["residual_max"], 1e-10);
+    const ProgramResult verified = run_ricci(folder, {"verify", folder / "f.h5", "--recompute", "--json"});
+    EXPECT_EQ(verified.status, 0) << verified.out;
+    const auto again = objects(verified.out).at(0)["recomputed"].at(0);
+    EXPECT_EQ(again["digits"], 50);
+    EXPECT_LE(again["residual_recomputed"], 1.1e-10);
+    EXPECT_LE(again["gauss_bonnet_error_recomputed"], 1e-10);
+    // Without its low part the stored factor is another one.
+    const StoredRun run = read_run(folder / "f.h5");
+    FlowRecord record = *run.items.at(0).flow;
+    ASSERT_FALSE(record.conformal_factor_low.empty());
+    record.conformal_factor_low.clear();
+    {
+        RunStore store(folder / "rounded.h5", run.info, false);
+        store.write_item(run.items.at(0).item);
+        store.write_flow(record);
+        store.assemble({run.items.at(0).item.name}, {});
+    }
+    EXPECT_EQ(run_ricci(folder, {"verify", folder / "rounded.h5", "--recompute"}).status, 1);
+    EXPECT_EQ(with({"--precision", "quadruple"}).status, 2);
 }
 
 }  // namespace

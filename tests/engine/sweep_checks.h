@@ -15,7 +15,8 @@ inline void expect_same(const SweepSolve& a, const SweepSolve& b) {
     EXPECT_EQ(a.residual_max, b.residual_max);
     EXPECT_EQ(a.newton_iterations, b.newton_iterations);
     EXPECT_EQ(a.flips, b.flips);
-    EXPECT_EQ(a.extended_precision, b.extended_precision);
+    EXPECT_EQ(a.precision_digits, b.precision_digits);
+    EXPECT_EQ(a.gauss_bonnet_error, b.gauss_bonnet_error);
     EXPECT_EQ(a.conformal_factor, b.conformal_factor);
 }
 

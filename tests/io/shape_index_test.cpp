@@ -49,6 +49,9 @@ ShapeRecord shape_of(int k) {
     }
     shape.complete_up_to = 4.0 + x;
     shape.marking_gap = x;
+    shape.residual_max = 1e-13 * x;
+    shape.gauss_bonnet_error = 1e-12 * x;
+    shape.precision_digits = 19;
     shape.seconds = {0.5, 0.25, 0.125, x};
     if (k % 3 == 0)
         for (const double shift : {0.5, -0.25, 0.0}) {
@@ -105,6 +108,9 @@ void expect_equal(const ShapeRecord& a, const ShapeRecord& b) {
     EXPECT_EQ(a.primitive, b.primitive);
     EXPECT_EQ(a.complete_up_to, b.complete_up_to);
     EXPECT_EQ(a.marking_gap, b.marking_gap);
+    EXPECT_EQ(a.residual_max, b.residual_max);
+    EXPECT_EQ(a.gauss_bonnet_error, b.gauss_bonnet_error);
+    EXPECT_EQ(a.precision_digits, b.precision_digits);
     EXPECT_EQ(a.seconds, b.seconds);
     ASSERT_EQ(a.resolutions.size(), b.resolutions.size());
     for (std::size_t r = 0; r < a.resolutions.size(); ++r) {

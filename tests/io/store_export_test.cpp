@@ -46,7 +46,8 @@ with h5py.File(sys.argv[1]) as h:
     g = h['items/a@32']
     assert g.attrs['source'] == 'meshes/a@32.off' and g.attrs['units'] == 'mm' and g.attrs['vertices'] == 16
     kinds = {'vertex': 'i4', 'area_distortion': 'f8', 'newton_iterations': 'u2', 'residual_max': 'f8',
-             'flips': 'i4', 'seconds': 'f4', 'status': 'u1'}
+             'flips': 'i4', 'seconds': 'f4', 'status': 'u1', 'gauss_bonnet_error': 'f8',
+             'precision_digits': 'i4'}
     for k, d in kinds.items():
         assert g['sweep'][k].dtype == np.dtype('<' + d) and g['sweep'][k].shape == (16,), k
     e = h5py.check_enum_dtype(g['sweep/status'].dtype)
@@ -90,9 +91,10 @@ TEST(StoreExport, Csv) {
     run.items = {item, StoredItem()};
     export_csv(folder.file("rows.csv"), run);
     EXPECT_EQ(read_text(folder.file("rows.csv")),
-              "item,vertex,status,area_distortion,newton_iterations,residual_max,flips,seconds\n"
-              "\"a, \"\"b\"\"@8\",3,converged,0.1,8,2.5e-12,9,0.25\n"
-              "\"a, \"\"b\"\"@8\",4,max_iterations,nan,9,2e-12,12,0.25\n");
+              "item,vertex,status,area_distortion,newton_iterations,residual_max,flips,seconds,"
+              "gauss_bonnet_error,precision_digits\n"
+              "\"a, \"\"b\"\"@8\",3,converged,0.1,8,2.5e-12,9,0.25,0.75,19\n"
+              "\"a, \"\"b\"\"@8\",4,max_iterations,nan,9,2e-12,12,0.25,1,16\n");
 }
 
 std::vector<PointField> sample_fields(const ItemRecord& item) {

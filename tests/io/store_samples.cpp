@@ -16,8 +16,9 @@ std::string exact(const std::vector<double>& values) {
 std::string describe_sweep(const StoredSweep& sweep) {
     std::string text;
     for (const SweepRow& row : sweep.rows)
-        text += fmt::format("{} {} {:a} {} {:a} {}\n", row.vertex, row.status, row.area_distortion,
-                            row.newton_iterations, row.residual_max, row.flips);
+        text += fmt::format("{} {} {:a} {} {:a} {} {:a} {}\n", row.vertex, row.status, row.area_distortion,
+                            row.newton_iterations, row.residual_max, row.flips, row.gauss_bonnet_error,
+                            row.precision_digits);
     for (const KeptFactor& kept : sweep.kept)
         text +=
             fmt::format("kept {} {:a} {}\n", kept.vertex, kept.area_distortion, exact(kept.conformal_factor));
@@ -25,12 +26,13 @@ std::string describe_sweep(const StoredSweep& sweep) {
 }
 
 std::string describe_flow(const FlowRecord& flow) {
-    return fmt::format("{} {} {} {} {} {} {} {:a} {:a} {} {}|{}|{}|{} {} {}|{}|{} {}\n", flow.geometry,
+    return fmt::format("{} {} {} {} {} {} {} {:a} {:a} {} {} {}|{}|{}|{}|{} {} {}|{}|{} {}\n", flow.geometry,
                        flow.scheme, flow.method, flow.boundary, flow.status, flow.newton_iterations,
-                       flow.flips, flow.residual_max, flow.gauss_bonnet_error, flow.doubled,
-                       exact(flow.conformal_factor), exact(flow.target_curvature), exact(flow.curvature),
-                       flow.triangles, flow.twin, exact(flow.edge_length), exact(flow.log_residual_max),
-                       exact(flow.log_step), flow.log_flips);
+                       flow.flips, flow.residual_max, flow.gauss_bonnet_error, flow.precision_digits,
+                       flow.doubled, exact(flow.conformal_factor), exact(flow.conformal_factor_low),
+                       exact(flow.target_curvature), exact(flow.curvature), flow.triangles, flow.twin,
+                       exact(flow.edge_length), exact(flow.log_residual_max), exact(flow.log_step),
+                       flow.log_flips);
 }
 
 std::string describe_item(const ItemRecord& item) {

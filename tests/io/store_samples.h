@@ -96,6 +96,8 @@ inline SweepRow sample_row(Index vertex) {
     row.residual_max = 1e-11 / (1 + vertex);
     row.flips = 3 * vertex;
     row.seconds = 0.25F;
+    row.gauss_bonnet_error = 0.25 * vertex;
+    row.precision_digits = vertex % 3 == 0 ? 19 : 16;
     return row;
 }
 
@@ -136,9 +138,11 @@ inline FlowRecord sample_flow(const ItemRecord& item) {
     flow.residual_max = 3e-12;
     flow.gauss_bonnet_error = 1e-14;
     flow.seconds = 0.5;
+    flow.precision_digits = 50;
     flow.doubled = true;
     for (Index v = 0; v < item.vertices; ++v) {
         flow.conformal_factor.push_back(0.1 * v);
+        flow.conformal_factor_low.push_back(1e-18 * v);
         flow.target_curvature.push_back(0.0);
         flow.curvature.push_back(1e-13 * v);
     }

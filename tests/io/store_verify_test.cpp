@@ -213,6 +213,7 @@ TEST(StoreVerify, EveryDatasetIsMissed) {
                              "sweep/residual_max",
                              "sweep/flips",
                              "sweep/seconds",
+                             "sweep/gauss_bonnet_error",
                              "sweep/best/vertex",
                              "sweep/best/conformal_factor",
                              "sweep/best/area_distortion",

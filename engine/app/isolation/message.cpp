@@ -40,7 +40,9 @@ MessageWriter& MessageWriter::put(const SweepBlock& block) {
             .put(row.newton_iterations)
             .put(row.residual_max)
             .put(row.flips)
-            .put(row.seconds);
+            .put(row.seconds)
+            .put(row.gauss_bonnet_error)
+            .put(row.precision_digits);
     put(static_cast<std::uint64_t>(block.kept.size()));
     for (const KeptFactor& kept : block.kept)
         put(kept.vertex).put(kept.area_distortion).put(kept.conformal_factor);
@@ -54,6 +56,7 @@ MessageWriter& MessageWriter::put(const ShapeRecord& shape) {
     put(static_cast<std::uint64_t>(shape.names.size()));
     for (const std::string& name : shape.names) put(name);
     put(shape.lengths).put(shape.primitive).put(shape.complete_up_to).put(shape.marking_gap);
+    put(shape.residual_max).put(shape.gauss_bonnet_error).put(shape.precision_digits);
     put(std::span<const double>(shape.seconds)).put(static_cast<std::uint64_t>(shape.resolutions.size()));
     for (const ShapeResolution& resolution : shape.resolutions)
         put(resolution.faces).put(resolution.fingerprint).put(resolution.coordinates);
@@ -104,6 +107,8 @@ SweepBlock MessageReader::get_block() {
         row.residual_max = get<double>();
         row.flips = get<std::int32_t>();
         row.seconds = get<float>();
+        row.gauss_bonnet_error = get<double>();
+        row.precision_digits = get<std::int32_t>();
         block.rows.push_back(row);
     }
     for (auto left = get<std::uint64_t>(); left > 0; --left) {
@@ -131,6 +136,9 @@ ShapeRecord MessageReader::get_shape() {
     shape.primitive = get_vector<std::uint8_t>();
     shape.complete_up_to = get<double>();
     shape.marking_gap = get<double>();
+    shape.residual_max = get<double>();
+    shape.gauss_bonnet_error = get<double>();
+    shape.precision_digits = get<std::int32_t>();
     const auto seconds = get_vector<double>();
     if (seconds.size() != shape.seconds.size()) throw ProtocolError("a shape has other times than it should");
     std::copy(seconds.begin(), seconds.end(), shape.seconds.begin());

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "engine/flow/flow.h"
-#include "engine/layout/extended.h"
 #include "engine/layout/final_metric.inl"
 #include "engine/surfaces/regular_map.h"
+#include "kernels/extended.h"
 #include "tests/engine/refinement/refinement_surfaces.h"
 
 namespace ricci {

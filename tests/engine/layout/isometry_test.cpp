@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "engine/layout/extended.h"
 #include "engine/layout/surface_layout.h"
+#include "kernels/extended.h"
 #include "tests/support/random.h"
 
 namespace ricci {
