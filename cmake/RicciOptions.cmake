@@ -26,13 +26,23 @@ if(RICCI_SANITIZE)
     target_compile_options(ricci_options INTERFACE -fsanitize=${RICCI_SANITIZE} -fno-omit-frame-pointer
         -fno-sanitize-recover=all
         # Instrumented code makes GCC's flow analysis see uninitialised values that are none (in OpenMesh, for one).
-        -Wno-maybe-uninitialized)
+        $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
     target_link_options(ricci_options INTERFACE -fsanitize=${RICCI_SANITIZE})
     # A sanitizer's runtime is not up yet when ifunc resolvers run.
     target_compile_definitions(ricci_options INTERFACE RICCI_NO_CLONES)
     if(RICCI_SANITIZE MATCHES thread)
         target_compile_definitions(ricci_options INTERFACE RICCI_PLAIN_THREADS)
     endif()
+endif()
+
+if(RICCI_FUZZ)
+    if(NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+        message(FATAL_ERROR "RICCI_FUZZ needs clang and its libFuzzer (Debian: clang-14, libclang-rt-14-dev): use the preset fuzz")
+    endif()
+    # Every room counts its branches; the targets of tests/fuzz link the engine that reads the counts.
+    # Instrumented loops do not vectorise, which is no fault here.
+    target_compile_options(ricci_options INTERFACE -fsanitize=fuzzer-no-link -Wno-pass-failed)
+    target_link_options(ricci_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
 function(ricci_add_room name sources)

@@ -5,19 +5,13 @@
 #include <numeric>
 #include <utility>
 
+#include "kernels/point_distance.h"
+
 namespace ricci {
 namespace {
 
 std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
-}
-
-/// In long double: squares of doubles neither overflow nor underflow there, and the result is rounded once.
-double distance(const Point& a, const Point& b) {
-    const long double x = static_cast<long double>(b[0]) - a[0];
-    const long double y = static_cast<long double>(b[1]) - a[1];
-    const long double z = static_cast<long double>(b[2]) - a[2];
-    return static_cast<double>(std::sqrt(x * x + y * y + z * z));
 }
 
 /// Kahan, "Miscalculating area and angles of a needle-like triangle", section 2: sides sorted a >= b >= c.
@@ -47,7 +41,7 @@ SurfaceMesh make_surface_mesh(std::vector<Point> points, std::span<const Triangl
     mesh.edge_length.resize(c.tail.size());
     for (Index h = 0; h < c.halfedge_count(); ++h) {
         // Differences change sign only, so twins get the same bits.
-        mesh.edge_length[at(h)] = distance(mesh.points[at(c.tail[at(h)])], mesh.points[at(c.head(h))]);
+        mesh.edge_length[at(h)] = point_distance(mesh.points[at(c.tail[at(h)])], mesh.points[at(c.head(h))]);
     }
     mesh.input_vertex.resize(mesh.points.size());
     std::iota(mesh.input_vertex.begin(), mesh.input_vertex.end(), Index{0});

@@ -54,6 +54,8 @@ void add_common(CLI::App& command, CommonOptions& common) {
     command.add_flag("--json", common.json, "One JSON object per item on stdout");
     command.add_option("--threads", common.threads, "Threads to use (default: all this process may use)")
         ->check(CLI::Range(1, 4096));
+    command.add_option("--max-unpacked", common.max_unpacked,
+                       "What a .gz may unpack to, like 2G (default: 200 times its size, at least 64M)");
     command.add_flag("-q,--quiet", common.quiet, "Errors only");
     command.add_flag("-v,--verbose", common.verbose, "More on stderr");
 }
@@ -92,7 +94,11 @@ int run(int argc, char** argv) {
         return app.exit(e) == 0 ? kDone : kUsage;
     }
     set_up_log(common);
-    return execute(action);
+    return execute([&] {
+        set_max_unpacked(
+            common.max_unpacked.empty() ? 0 : static_cast<std::uint64_t>(parse_bytes(common.max_unpacked)));
+        return action();
+    });
 }
 
 }  // namespace ricci::app

@@ -70,7 +70,7 @@ StoredLayout layout_of(const StoredItem& stored) {
     if (found == nullptr)
         throw UsageError(
             fmt::format("{} has no layout: `ricci layout MESH -o FILE` makes one", stored.item.name));
-    return read_layout_group(*found);
+    return read_layout_group(*found, stored.item.triangles.size());
 }
 
 /// An array of doubles of a group; empty where there is none.

@@ -205,7 +205,8 @@ std::int64_t parse_bytes(const std::string& text) {
     }
     double value = 0.0;
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
-    if (error != std::errc() || end != number.data() + number.size() || !(value > 0.0))
+    if (error != std::errc() || end != number.data() + number.size() || !(value > 0.0) ||
+        !(value * factor < 9e18))
         throw UsageError(fmt::format("'{}' is no amount of memory (like 500M or 8G)", text));
     return static_cast<std::int64_t>(value * factor);
 }

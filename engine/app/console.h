@@ -15,7 +15,8 @@ namespace ricci::app {
 /// Options that every subcommand has.
 struct CommonOptions {
     bool json = false, quiet = false, verbose = false;
-    int threads = 0;  // 0: all this process may use
+    int threads = 0;           // 0: all this process may use
+    std::string max_unpacked;  // of .gz; empty: the default
 
     [[nodiscard]] int resolved_threads() const;
 };

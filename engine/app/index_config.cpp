@@ -1,13 +1,14 @@
 #include "engine/app/index_config.h"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
+#include <cmath>
 #include <sstream>
 
 #include "engine/app/console.h"
 #include "engine/app/solve_options.h"
 #include "engine/app/sweep_config.h"
+#include "engine/app/toml_text.h"
 
 namespace ricci::app {
 namespace {
@@ -17,6 +18,14 @@ void take(const toml::table& root, const char* table, const char* key, T& value)
     const auto found = root[table][key].value<T>();
     if (!found) throw UsageError(fmt::format("the index lacks its option [{}] {}", table, key));
     value = *found;
+}
+
+/// What add_index_options() asks of arguments holds of stored options too: they decide what a query computes.
+void require_ranges(const IndexConfig& c) {
+    const bool in_range = c.max_length > 0.0 && std::isfinite(c.max_length) && c.count >= 0 &&
+                          c.fingerprint >= 1 && c.fingerprint <= 1000 && c.tolerance > 0.0 &&
+                          std::isfinite(c.tolerance) && c.max_iterations >= 0 && c.timeout >= 0.0;
+    if (!in_range) throw UsageError("an option of the index is out of its range");
 }
 
 }  // namespace
@@ -83,12 +92,7 @@ std::string to_toml(const IndexConfig& c) {
 
 IndexConfig index_config_from_toml(const std::string& text) {
     IndexConfig c;
-    toml::table root;
-    try {
-        root = toml::parse(text);
-    } catch (const toml::parse_error& e) {
-        throw UsageError(fmt::format("the options of the index cannot be read: {}", e.description()));
-    }
+    const toml::table root = parse_toml(text, "the options of the index");
     take(root, "input", "repair", c.repair);
     take(root, "solve", "scheme", c.scheme);
     take(root, "solve", "delaunay", c.delaunay);
@@ -103,6 +107,7 @@ IndexConfig index_config_from_toml(const std::string& text) {
     if (resolutions == nullptr) throw UsageError("the index lacks its option [input] resolutions");
     c.resolutions.clear();
     for (const toml::node& node : *resolutions) c.resolutions.push_back(node.value_or(std::string()));
+    require_ranges(c);
     return c;
 }
 

@@ -53,15 +53,21 @@ ItemRecord make_item(const std::string& name, const std::string& source, std::ui
 }
 
 SurfaceMesh surface_of(const ItemRecord& item) {
-    if (item.twin.empty()) return make_surface_mesh(item.points, item.triangles);
-    SurfaceMesh mesh;
-    std::vector<Index> tail;
-    for (const Triangle& t : item.triangles) tail.insert(tail.end(), t.begin(), t.end());
-    mesh.connectivity =
-        connectivity_from_gluing(std::move(tail), item.twin, static_cast<Index>(item.source_vertex.size()));
-    mesh.edge_length = item.edge_length;
-    mesh.input_vertex = item.source_vertex;
-    return mesh;
+    try {
+        if (item.twin.empty()) return make_surface_mesh(item.points, item.triangles);
+        SurfaceMesh mesh;
+        std::vector<Index> tail;
+        for (const Triangle& t : item.triangles) tail.insert(tail.end(), t.begin(), t.end());
+        mesh.connectivity = connectivity_from_gluing(std::move(tail), item.twin,
+                                                     static_cast<Index>(item.source_vertex.size()));
+        if (const char* broken = check_connectivity(mesh.connectivity); *broken != '\0')
+            throw std::invalid_argument(broken);
+        mesh.edge_length = item.edge_length;
+        mesh.input_vertex = item.source_vertex;
+        return mesh;
+    } catch (const std::invalid_argument& error) {
+        throw FileError(item.name + "/mesh: no surface: " + error.what());
+    }
 }
 
 FlowRecord make_flow_record(const std::string& item, const FlowResult& result, const FlowOptions& options,

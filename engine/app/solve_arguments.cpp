@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
-#include <toml++/toml.h>
 
 #include <chrono>
 #include <sstream>
 
 #include "engine/app/records.h"
 #include "engine/app/solve_options.h"
+#include "engine/app/toml_text.h"
 #include "engine/remesh/densify.h"
 
 namespace ricci::app {

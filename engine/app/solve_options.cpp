@@ -5,14 +5,18 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
+#include <string_view>
 #include <utility>
 
 #include "engine/app/console.h"
+#include "io/mesh/formats/file_bytes.h"
+#include "io/mesh/formats/text_lines.h"
 #include "io/mesh/mesh_file.h"
 
 namespace ricci::app {
 namespace {
+
+constexpr std::string_view kBlanks = " \t\v\f";
 
 template <class T, std::size_t n>
 T parse_name(const char* what, const std::string& text, const std::array<T, n>& values) {
@@ -27,23 +31,20 @@ T parse_name(const char* what, const std::string& text, const std::array<T, n>& 
 /// Calls use(line number, text) for each line that is not empty once comments are gone.
 template <class Use>
 void for_lines(const std::string& path, Use&& use) {
-    std::ifstream file(path);
-    if (!file) throw FileError(fmt::format("{}: cannot be read", path));
-    std::string line;
-    for (std::int64_t number = 1; std::getline(file, line); ++number) {
-        line.erase(std::min(line.find('#'), line.size()));
-        const auto begin = line.find_first_not_of(" \t\r");
-        if (begin == std::string::npos) continue;
-        use(number, line.substr(begin, line.find_last_not_of(" \t\r") - begin + 1));
+    const std::string bytes = read_file_bytes(path);
+    for (TextLines lines(bytes, '#'); lines.next_filled();) {
+        const std::string_view line = lines.line();
+        const auto begin = line.find_first_not_of(kBlanks);
+        use(lines.number(), line.substr(begin, line.find_last_not_of(kBlanks) - begin + 1));
     }
 }
 
 template <class T>
-T parse_line(const std::string& path, std::int64_t number, const std::string& text) {
+T parse_line(const std::string& path, std::int64_t number, std::string_view text) {
     T value{};
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size())
-        throw UsageError(fmt::format("{}:{}: '{}' is not a number", path, number, text));
+        throw UsageError(fmt::format("{}:{}: {} is not a number", path, number, shown(text)));
     return value;
 }
 
@@ -107,7 +108,7 @@ void parse_target(const std::string& text, FlowOptions& options) {
         options.target = TargetKind::boundary;
     } else {
         options.target = TargetKind::values;
-        for_lines(text, [&](std::int64_t number, const std::string& line) {
+        for_lines(text, [&](std::int64_t number, std::string_view line) {
             const double value = parse_line<double>(text, number, line);
             if (!std::isfinite(value)) throw UsageError(fmt::format("{}:{}: not finite", text, number));
             options.target_values.push_back(value);
@@ -117,7 +118,7 @@ void parse_target(const std::string& text, FlowOptions& options) {
 
 std::vector<Index> read_vertex_list(const std::string& path) {
     std::vector<Index> list;
-    for_lines(path, [&](std::int64_t number, const std::string& line) {
+    for_lines(path, [&](std::int64_t number, std::string_view line) {
         list.push_back(parse_line<Index>(path, number, line));
     });
     return list;

@@ -1,6 +1,8 @@
 #include "engine/app/stored_layout.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 
 #include "engine/app/console.h"
@@ -52,7 +54,43 @@ class StoredArrays {
     std::string item_;
 };
 
-CommonRefinement read_refinement(const StoredArrays& arrays) {
+/// Whether all lie in low ... limit - 1.
+bool all_in(const std::vector<Index>& values, Index low, std::size_t limit) {
+    return std::all_of(values.begin(), values.end(),
+                       [&](Index v) { return v >= low && (v < 0 || at(v) < limit); });
+}
+
+/// What can be drawn and multiplied without leaving the range of double.
+template <std::size_t n>
+bool all_moderate(const std::vector<std::array<double, n>>& rows) {
+    constexpr double kLargest = 1e150;
+    return std::all_of(rows.begin(), rows.end(), [](const auto& row) {
+        return std::all_of(row.begin(), row.end(), [](double x) { return std::abs(x) <= kLargest; });
+    });
+}
+
+void require_pieces(const StoredArrays& arrays, const CommonRefinement& r, std::size_t faces) {
+    const std::size_t corners = r.vertex.size();
+    arrays.require(r.first.size() == r.input_face.size() + 1 && r.final_face.size() == r.input_face.size() &&
+                       r.first.front() == 0 && at(r.first.back()) == corners &&
+                       std::is_sorted(r.first.begin(), r.first.end()),
+                   "pieces do not fit their corners");
+    arrays.require(std::adjacent_find(r.first.begin(), r.first.end()) == r.first.end(),
+                   "a piece has no corners");
+    arrays.require(r.twin.size() == corners && r.input_halfedge.size() == corners &&
+                       r.final_halfedge.size() == corners && r.weight.size() == corners &&
+                       r.flat.size() == corners,
+                   "corners have arrays of different lengths");
+    constexpr std::size_t kNoLimit =
+        std::numeric_limits<Index>::max();  // intrinsic surfaces list no vertices
+    const std::size_t vertices = r.points.empty() ? kNoLimit : r.points.size();
+    arrays.require(all_in(r.twin, -1, corners) && all_in(r.vertex, 0, vertices) &&
+                       all_in(r.input_face, 0, faces) && all_in(r.input_halfedge, -1, 3 * faces),
+                   "a corner names something that does not exist");
+    arrays.require(all_moderate(r.points), "a point is not finite, or beyond 1e150");
+}
+
+CommonRefinement read_refinement(const StoredArrays& arrays, std::size_t faces) {
     CommonRefinement r;
     if (arrays.has("refinement/points")) r.points = arrays.rows<3>("refinement/points");
     r.first = arrays.list<Index>("refinement/first");
@@ -64,24 +102,10 @@ CommonRefinement read_refinement(const StoredArrays& arrays) {
     r.final_halfedge = arrays.list<Index>("refinement/final_halfedge");
     r.weight = arrays.rows<3>("refinement/weight");
     r.flat = arrays.rows<2>("refinement/flat");
-    const std::size_t corners = r.vertex.size();
-    arrays.require(r.first.size() == r.input_face.size() + 1 && r.final_face.size() == r.input_face.size() &&
-                       r.first.front() == 0 && at(r.first.back()) == corners &&
-                       std::is_sorted(r.first.begin(), r.first.end()),
-                   "pieces do not fit their corners");
-    arrays.require(r.twin.size() == corners && r.input_halfedge.size() == corners &&
-                       r.final_halfedge.size() == corners && r.weight.size() == corners &&
-                       r.flat.size() == corners,
-                   "corners have arrays of different lengths");
+    require_pieces(arrays, r, faces);
     for (Index p = 0; p < r.piece_count(); ++p)
         r.piece.insert(r.piece.end(), at(r.first[at(p) + 1] - r.first[at(p)]), p);
     for (const Index v : r.vertex) r.vertex_count = std::max(r.vertex_count, v + 1);
-    const auto below = [](const std::vector<Index>& values, std::size_t limit) {
-        return std::all_of(values.begin(), values.end(),
-                           [&](Index v) { return v >= -1 && v < static_cast<Index>(limit); });
-    };
-    arrays.require(below(r.twin, corners) && (r.points.empty() || below(r.vertex, r.points.size())),
-                   "a corner names something that does not exist");
     return r;
 }
 
@@ -98,7 +122,7 @@ std::vector<std::vector<Index>> read_lists(const StoredArrays& arrays, const std
     return lists;
 }
 
-CutGraph read_cut(const StoredArrays& arrays) {
+CutGraph read_cut(const StoredArrays& arrays, std::size_t faces) {
     CutGraph cut;
     const auto& name = arrays.list<std::string>("sides/name");
     const auto& partner = arrays.list<Index>("sides/partner");
@@ -107,6 +131,9 @@ CutGraph read_cut(const StoredArrays& arrays) {
     arrays.require(
         partner.size() == name.size() && boundary.size() == name.size() && halfedges.size() == name.size(),
         "sides do not fit together");
+    arrays.require(all_in(partner, -1, name.size()), "a side is glued to one that does not exist");
+    for (const std::vector<Index>& side : halfedges)
+        arrays.require(all_in(side, 0, 3 * faces), "a side runs along a halfedge that does not exist");
     for (std::size_t s = 0; s < name.size(); ++s)
         cut.sides.push_back({name[s], partner[s], boundary[s], std::move(halfedges[s])});
     return cut;
@@ -114,11 +141,11 @@ CutGraph read_cut(const StoredArrays& arrays) {
 
 }  // namespace
 
-StoredLayout read_layout_group(const ResultGroup& group) {
+StoredLayout read_layout_group(const ResultGroup& group, std::size_t faces) {
     const StoredArrays arrays(group);
     StoredLayout stored;
-    stored.refinement = read_refinement(arrays);
-    stored.cut = read_cut(arrays);
+    stored.refinement = read_refinement(arrays, faces);
+    stored.cut = read_cut(arrays, faces);
     SurfaceLayout& layout = stored.layout;
     for (const ResultAttribute& attribute : group.attributes)
         if (attribute.name == "geometry" && std::holds_alternative<std::string>(attribute.value)) {
@@ -138,12 +165,17 @@ StoredLayout read_layout_group(const ResultGroup& group) {
                        layout.corner_vertex.size() == stored.refinement.vertex.size() &&
                        layout.refinement_vertex.size() == layout.position.size(),
                    "layout arrays differ in length");
-    arrays.require(std::all_of(layout.corner_vertex.begin(), layout.corner_vertex.end(),
-                               [&](Index v) { return v >= 0 && at(v) < layout.position.size(); }),
-                   "a corner names a layout vertex that does not exist");
+    const auto vertices = at(stored.refinement.vertex_count);
+    arrays.require(all_in(layout.corner_vertex, 0, layout.position.size()) &&
+                       all_in(layout.refinement_vertex, 0, vertices) &&
+                       all_in(side, 0, stored.cut.sides.size()),
+                   "a corner, vertex or pairing names something that does not exist");
+    arrays.require(all_moderate(layout.position), "a position is not finite, or beyond 1e150");
     layout.base_frame = base.front();
     for (std::size_t k = 0; k < side.size(); ++k) layout.pairings.push_back({side[k], element[k], spread[k]});
     stored.generators = read_lists(arrays, "generators/path");
+    for (const std::vector<Index>& loop : stored.generators)
+        arrays.require(all_in(loop, 0, vertices), "a generator runs through a vertex that does not exist");
     if (arrays.has("copies/element")) stored.copies = arrays.isometries("copies/element");
     return stored;
 }

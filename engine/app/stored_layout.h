@@ -17,7 +17,8 @@ LayoutModel parse_layout_model(const std::string& text);
 std::array<double, 2> model_point(LayoutModel model, int kappa, const std::array<double, 3>& position);
 
 /// What pictures and exports need of a layout, from the group that make_layout_group made: positions, frames,
-/// pairings, pieces and sides. Throws FileError where an array is missing or its size does not fit.
+/// pairings, pieces and sides. `faces`: of the item's mesh. Throws FileError where an array is missing, its
+/// size does not fit, or an index or coordinate is out of range: whoever draws need not look again.
 struct StoredLayout {
     CommonRefinement refinement;  // without its final triangulation
     SurfaceLayout layout;
@@ -25,7 +26,7 @@ struct StoredLayout {
     std::vector<Isometry<double>> copies;
     std::vector<std::vector<Index>> generators;  // closed vertex paths on the mesh
 };
-StoredLayout read_layout_group(const ResultGroup& group);
+StoredLayout read_layout_group(const ResultGroup& group, std::size_t faces);
 
 /// The refined input with layout coordinates as texture coordinates: convex pieces, the input's vertices
 /// first. Disk models are moved from [-1, 1] to [0, 1]. Throws UsageError for an intrinsic surface.

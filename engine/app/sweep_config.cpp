@@ -1,17 +1,18 @@
 #include "engine/app/sweep_config.h"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <sstream>
 
 #include "engine/app/console.h"
 #include "engine/app/solve_options.h"
+#include "engine/app/toml_text.h"
 #include "engine/sweep/scheduler.h"
-#include "io/store/durable.h"
+#include "io/mesh/formats/file_bytes.h"
 
 namespace ricci::app {
 namespace {
@@ -98,16 +99,11 @@ T whole_number(const std::string& text, const std::string& what) {
 
 SweepConfig read_sweep_config(const std::string& path) {
     if (!std::filesystem::exists(path)) throw FileError(fmt::format("{}: no such configuration file", path));
-    return parse_sweep_config(read_text(path), path);
+    return sweep_config_from_toml(read_file_bytes(path), path);
 }
 
-SweepConfig parse_sweep_config(const std::string& text, const std::string& path) {
-    toml::table root;
-    try {
-        root = toml::parse(text, path);
-    } catch (const toml::parse_error& e) {
-        throw UsageError(fmt::format("{}:{}: {}", path, e.source().begin.line, std::string(e.description())));
-    }
+SweepConfig sweep_config_from_toml(std::string_view text, const std::string& path) {
+    const toml::table root = parse_toml(text, path);
     for (const auto& [key, node] : root)
         if (key.str() != "input" && key.str() != "solve" && key.str() != "sweep" && key.str() != "run")
             complain(path, node,
@@ -194,7 +190,10 @@ SweepOptions sweep_options(const SweepConfig& c) {
     options.densify = c.densify;
     if (options.densify && options.scheme == Scheme::vertex_scaling)
         throw UsageError("densify is for the circle packings; vertex scaling flips edges and needs none");
-    if (!(c.tolerance > 0.0)) throw UsageError("tolerance must be positive");
+    if (!(c.tolerance > 0.0) || !std::isfinite(c.tolerance)) throw UsageError("tolerance must be positive");
+    if (c.max_iterations < 0) throw UsageError("max_iterations must not be negative");
+    if (!(c.timeout >= 0.0)) throw UsageError("timeout must not be negative");
+    if (c.threads < 0 || c.threads > 4096) throw UsageError("threads must be 0 (all) to 4096");
     options.tolerance = c.tolerance;
     options.max_iterations = c.max_iterations;
     options.solver = parse_solver(c.solver);
@@ -213,7 +212,9 @@ KeepPolicy parse_keep(const std::string& text) {
     if (text == "best") return {true, false, 0};
     if (text == "worst") return {false, true, 0};
     if (text == "all") return {true, true, -1};
-    return {true, true, whole_number<std::int64_t>(text, "keep (none, best, worst, all or a number)")};
+    const auto count = whole_number<std::int64_t>(text, "keep (none, best, worst, all or a number)");
+    if (count < 0) throw UsageError(fmt::format("keep: '{}' is negative", text));
+    return {true, true, count};
 }
 
 VertexChoice parse_vertices(const std::string& text) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/sweep/sweep_solver.h"
@@ -39,7 +40,7 @@ struct SweepConfig {
 /// the wrong type.
 SweepConfig read_sweep_config(const std::string& path);
 /// The same from its text; `path` is for messages.
-SweepConfig parse_sweep_config(const std::string& text, const std::string& path);
+SweepConfig sweep_config_from_toml(std::string_view text, const std::string& path);
 
 /// The resolved configuration as TOML: what decides the results, and how it was run.
 std::string to_toml(const SweepConfig& config, bool only_what_decides_results);

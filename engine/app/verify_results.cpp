@@ -1,7 +1,6 @@
 #include "engine/app/verify_results.h"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <cmath>
 #include <limits>
@@ -10,6 +9,7 @@
 #include "engine/app/console.h"
 #include "engine/app/records.h"
 #include "engine/app/solve_options.h"
+#include "engine/app/toml_text.h"
 #include "engine/flow/target.h"
 #include "engine/sweep/sweep_solver.h"
 #include "engine/verify/recompute.h"
@@ -30,7 +30,7 @@ constexpr double kDistortionSlack = 1e-9;  // relative
 /// How the sweep was solved, from the stored configuration.
 SweepOptions options_of(const StoredRun& run) {
     SweepOptions options;
-    const toml::table root = toml::parse(run.info.config);
+    const toml::table root = parse_toml(run.info.config, "the stored configuration");
     const auto text = [&](const char* key, const std::string& fallback) {
         return root["solve"][key].value_or(fallback);
     };
@@ -144,7 +144,9 @@ RecomputedSolution check_flow(const StoredItem& item, const SweepOptions& option
     s.digits = recomputed_digits(flow.precision_digits);
     s.distortion_stored = std::numeric_limits<double>::quiet_NaN();
     const SurfaceMesh mesh = surface_of(item.item);
-    const Geometry geometry = parse_geometry(flow.geometry).value();
+    const std::optional<Geometry> named = parse_geometry(flow.geometry);
+    if (!named) throw FileError(fmt::format("{}/flow: geometry is '{}'", s.item, flow.geometry));
+    const Geometry geometry = *named;
     const Boundary boundary = parse_boundary(flow.boundary);
     // A free boundary's stored target is what it came to have; the flow started from zero there.
     std::vector<double> prescribed = flow.target_curvature;

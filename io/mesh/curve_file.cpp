@@ -1,7 +1,7 @@
 #include "io/mesh/curve_file.h"
 
 #include <limits>
-#include <unordered_map>
+#include <map>
 
 #include "io/mesh/formats/file_bytes.h"
 #include "io/mesh/formats/polygon_soup.h"
@@ -31,7 +31,7 @@ VertexCurve parse_curve(Tokens tokens) {
 std::vector<VertexCurve> read_curves(const std::string& path) {
     const std::string bytes = read_file_bytes(path);
     std::vector<VertexCurve> curves;
-    std::unordered_map<std::string, std::int64_t> lines_of;
+    std::map<std::string, std::int64_t> lines_of;  // ordered: no file can make its names collide
     try {
         for (TextLines lines(bytes, '#'); lines.next_filled();) {
             curves.push_back(parse_curve(lines.tokens()));

@@ -71,6 +71,11 @@ LoadedMesh load_mesh(const std::string& path, const RepairOptions& repair = {});
 /// gzip data that cannot be unpacked.
 LoadedMesh load_mesh_bytes(const std::string& path, std::string bytes, const RepairOptions& repair = {});
 
+/// How many bytes a .gz may unpack to, for this process; 0: the default, the larger of 64 MiB and 200 times
+/// its packed size. At most 16 GiB either way. Real meshes stay far below (bench figures in
+/// docs/reliability/hostile_input.md); a few bytes that would fill the memory do not. Thread-safe.
+void set_max_unpacked(std::uint64_t bytes);
+
 /// Writes points and triangles as OFF, OBJ or PLY (by suffix), or an intrinsic surface as .len; shortest
 /// round-trip decimals. Throws FileError.
 void save_mesh(const std::string& path, const SurfaceMesh& mesh);

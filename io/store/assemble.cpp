@@ -65,7 +65,7 @@ void write_kept(hid_t sweep, hdf5::OutputFile& file, const std::string& name, co
     hdf5::write_array(group, "vertex", vertices);
     hdf5::RowWriter writer(group, "conformal_factor", kept.size(), item.vertex_count);
     for (const Index vertex : vertices) {
-        writer.append(read_factor(source_of(item, name, vertex)));
+        writer.append(read_factor(source_of(item, name, vertex), item.vertex_count));
         file.check_writes();
     }
     writer.finish();
@@ -87,9 +87,9 @@ void write_sweep(hid_t group, hdf5::OutputFile& file, const std::string& name, c
     const Choice choice = choose(item, keep, *converged);
     const auto write_one = [&](const char* where, const SweepRow* row) {
         if (row == nullptr) return;
-        schema::write_extreme(
-            sweep, where,
-            {row->vertex, row->area_distortion, read_factor(source_of(item, name, row->vertex))});
+        schema::write_extreme(sweep, where,
+                              {row->vertex, row->area_distortion,
+                               read_factor(source_of(item, name, row->vertex), item.vertex_count)});
     };
     write_one("best", choice.best);
     write_one("worst", choice.worst);

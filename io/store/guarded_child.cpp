@@ -20,7 +20,12 @@
 namespace ricci {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(__has_feature)  // clang says it otherwise than GCC
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define RICCI_SANITIZED 1
+#endif
+#endif
+#if defined(RICCI_SANITIZED) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kLimitMemory = false;  // the sanitizers reserve terabytes of address space
 #else
 constexpr bool kLimitMemory = true;
@@ -91,6 +96,10 @@ std::string end_of(int status, bool in_time) {
 }
 
 }  // namespace
+
+ChildLimits foreign_file_limits(std::uint64_t file_bytes) {
+    return {60 + file_bytes / 1000000, (std::uint64_t{2} << 30U) + 16 * file_bytes};
+}
 
 std::vector<std::string> run_guarded(const ChildLimits& limits,
                                      const std::function<std::vector<std::string>()>& work) {

@@ -14,6 +14,10 @@ struct ChildLimits {
     std::uint64_t memory_bytes = 0;  // beyond what the parent has mapped
 };
 
+/// Limits for a file of so many bytes: a megabyte per second is slower than any disk worth the name, and
+/// contents are read in pieces or a few times the file's size.
+ChildLimits foreign_file_limits(std::uint64_t file_bytes);
+
 /// Runs `work` in a forked child and returns what it returns; a child that crashes, is killed by a limit, or
 /// throws becomes one complaint. The caller holds an hdf5::Session, so that no other thread is inside HDF5 at
 /// the fork; `work` must not open another. Throws FileError when no child can be had.

@@ -29,6 +29,9 @@ herr_t first_message(unsigned /*depth*/, const H5E_error2_t* error, void* text) 
 Session::Session() : lock_(session_mutex()) {
     H5Eget_auto2(H5E_DEFAULT, &printer_, &printer_data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    // A file names the filters it wants: none of them is to be loaded from wherever HDF5 looks for plugins.
+    static const bool no_plugins = H5PLset_loading_state(0) >= 0;
+    if (!no_plugins) throw FileError("HDF5 cannot be kept from loading plugins");
 }
 
 Session::~Session() {

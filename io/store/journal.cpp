@@ -6,8 +6,10 @@
 
 #include <cerrno>
 #include <charconv>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 
@@ -37,22 +39,47 @@ std::optional<json> believed(std::string_view line) {
     return object;
 }
 
-json runs_of(const std::vector<Index>& vertices) {
-    json runs = json::array();
-    for (std::size_t i = 0; i < vertices.size();) {
-        std::size_t j = i + 1;
-        while (j < vertices.size() && vertices[j] == vertices[j - 1] + 1) ++j;
-        runs.push_back({vertices[i], j - i});
-        i = j;
+json json_of(const std::vector<VertexRun>& runs) {
+    json list = json::array();
+    for (const VertexRun& run : runs) list.push_back({run.first, run.count});
+    return list;
+}
+
+// What the journal's JSON does not rule out, and no run has written.
+[[noreturn]] void refuse(const char* what) {
+    throw std::invalid_argument(what);
+}
+
+std::vector<VertexRun> runs_of(const json& list) {
+    std::vector<VertexRun> runs;
+    std::int64_t end = 0;
+    for (const json& run : list) {
+        const auto first = run.at(0).get<std::int64_t>(), count = run.at(1).get<std::int64_t>();
+        constexpr std::int64_t kMax = std::numeric_limits<Index>::max();
+        if (first < end || first > kMax || count < 1 || count > kMax - first)
+            refuse("runs of vertices that do not ascend");
+        end = first + count;
+        runs.push_back({static_cast<Index>(first), static_cast<Index>(count)});
     }
     return runs;
 }
 
-std::vector<Index> vertices_of(const json& runs) {
-    std::vector<Index> vertices;
-    for (const json& run : runs)
-        for (Index i = 0; i < run.at(1).get<Index>(); ++i) vertices.push_back(run.at(0).get<Index>() + i);
-    return vertices;
+// A file in the folder itself: a name that leads out of it would have its target read, and removed.
+std::string file_name(const json& name) {
+    auto text = name.get<std::string>();
+    if (text.empty() || text == "." || text == ".." ||
+        text.find_first_of(std::string_view("/\0", 2)) != std::string::npos)
+        refuse("the name of a segment is no file name");
+    return text;
+}
+
+std::uint64_t checksum_from(const json& digits) {
+    const auto text = digits.get<std::string>();
+    std::uint64_t checksum = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), checksum, 16);
+    if (error != std::errc() || end != text.data() + text.size())
+        refuse("a checksum is no hexadecimal number");
+    return checksum;
 }
 
 json object_of(const JournalEntry& entry) {
@@ -68,11 +95,11 @@ json object_of(const JournalEntry& entry) {
     if (entry.kind == "base" || entry.kind == "drop") return object;
     object["item"] = entry.item;
     object["checksum"] = hex16(entry.checksum);
-    if (entry.kind == "sweep") object["vertices"] = runs_of(entry.vertices);
+    if (entry.kind == "sweep") object["vertices"] = json_of(entry.vertices);
     return object;
 }
 
-// Throws json::exception on a line of another shape.
+// Throws json::exception or std::invalid_argument on a line of another shape.
 JournalEntry entry_of(const json& object) {
     JournalEntry entry;
     entry.kind = object.at("kind").get<std::string>();
@@ -81,12 +108,11 @@ JournalEntry entry_of(const json& object) {
                          object.at("status").get<std::string>(), object.at("message").get<std::string>()};
         return entry;
     }
-    entry.name = object.at("name").get<std::string>();
+    entry.name = file_name(object.at("name"));
     if (entry.kind == "base" || entry.kind == "drop") return entry;
     entry.item = object.at("item").get<std::string>();
-    const auto digits = object.at("checksum").get<std::string>();
-    std::from_chars(digits.data(), digits.data() + digits.size(), entry.checksum, 16);
-    if (entry.kind == "sweep") entry.vertices = vertices_of(object.at("vertices"));
+    entry.checksum = checksum_from(object.at("checksum"));
+    if (entry.kind == "sweep") entry.vertices = runs_of(object.at("vertices"));
     return entry;
 }
 
@@ -99,6 +125,15 @@ void read_header(const std::string& path, const std::optional<json>& object, Jou
 }
 
 }  // namespace
+
+std::vector<VertexRun> runs_of(const std::vector<Index>& vertices) {
+    std::vector<VertexRun> runs;
+    for (const Index vertex : vertices) {
+        if (runs.empty() || runs.back().first + runs.back().count != vertex) runs.push_back({vertex, 0});
+        ++runs.back().count;
+    }
+    return runs;
+}
 
 std::string journal_path(const std::string& folder) {
     return folder + "/journal";
@@ -129,6 +164,8 @@ JournalContents read_journal(const std::string& folder) {
         }
         if (number == 0) read_header(path, std::nullopt, contents.header);
     } catch (const json::exception& error) {
+        throw FileError(fmt::format("{}: not a journal of this program: {}", path, error.what()));
+    } catch (const std::invalid_argument& error) {
         throw FileError(fmt::format("{}: not a journal of this program: {}", path, error.what()));
     }
     return contents;

@@ -19,14 +19,21 @@ struct JournalHeader {
     std::vector<std::string> status_names;
 };
 
+/// Vertices first, first + 1, ... first + count - 1.
+struct VertexRun {
+    Index first = 0, count = 0;
+};
+/// Runs of ascending vertices.
+std::vector<VertexRun> runs_of(const std::vector<Index>& vertices);
+
 /// One fact. `kind` is "failure" (kept in the line itself), "retract" (drops the failure of the same item and
 /// stage), "drop" (the segment `name` turned out damaged), "base" (the complete result file is itself a
 /// segment) or what a segment holds: "item", "sweep", "flow" or the kind of a further result (name, item,
 /// checksum and, for "sweep", vertices).
 struct JournalEntry {
     std::string kind, name, item;
-    std::vector<Index> vertices;  // ascending; stored as runs [first, count]
-    std::uint64_t checksum = 0;   // XXH3-64 of the segment file
+    std::vector<VertexRun> vertices;  // ascending; stored as [first, count]
+    std::uint64_t checksum = 0;       // XXH3-64 of the segment file
     FailureRecord failure;
 
     [[nodiscard]] bool segment() const {
@@ -46,7 +53,8 @@ struct JournalContents {
 std::string journal_path(const std::string& folder);
 
 /// Reads a journal. A torn last line is ignored, a damaged line elsewhere skipped, both with a note. Throws
-/// FileError when the first line cannot be believed: then nothing can.
+/// FileError when the first line cannot be believed (then nothing can), and for lines that this program does
+/// not write, such as segments outside of the folder.
 JournalContents read_journal(const std::string& folder);
 
 /// An open journal, for appending.

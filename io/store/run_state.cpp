@@ -1,6 +1,7 @@
 #include "io/store/run_state.h"
 
 #include <cmath>
+#include <fmt/format.h>
 
 #include "io/store/schema.h"
 
@@ -103,10 +104,24 @@ void recall_rows(ItemState& item, const std::string& name, const StatusNames& st
     item.rows_at_hand = true;
 }
 
-std::vector<double> read_factor(const FactorSource& source) {
+void require_rows_of_vertices(const RunState& state, const std::string& where) {
+    for (const auto& [name, item] : state.items) {
+        if (item.rows.empty() || item.file.empty()) continue;
+        const Index lowest = item.rows.begin()->first, highest = item.rows.rbegin()->first;
+        if (lowest < 0 || static_cast<std::size_t>(highest) >= item.vertex_count)
+            throw FileError(fmt::format("{}: item {} has rows from vertex {} to {}, but {} vertices", where,
+                                        name, lowest, highest, item.vertex_count));
+    }
+}
+
+std::vector<double> read_factor(const FactorSource& source, std::size_t vertex_count) {
     const hdf5::Handle file = hdf5::open_input(source.file);
-    if (source.row) return hdf5::Input(file, source.dataset).read_row(*source.row);
-    return hdf5::read_array<double>(file, source.dataset, std::nullopt);
+    if (!source.row) return hdf5::read_array<double>(file, source.dataset, hdf5::Shape{vertex_count});
+    std::vector<double> row = hdf5::Input(file, source.dataset).read_row(*source.row);
+    if (row.size() != vertex_count)
+        throw FileError(
+            fmt::format("{}: rows of {} values, expected {}", source.dataset, row.size(), vertex_count));
+    return row;
 }
 
 }  // namespace ricci

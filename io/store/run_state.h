@@ -54,8 +54,12 @@ void merge_contents(RunState& state, RunState part);
 void release_rows(ItemState& item);
 void recall_rows(ItemState& item, const std::string& name, const StatusNames& status);
 
-/// Reads one conformal factor. Throws FileError.
-std::vector<double> read_factor(const FactorSource& source);
+/// Throws FileError, naming `where`, when a row of an item belongs to none of its vertices
+/// (as far as its mesh is stored).
+void require_rows_of_vertices(const RunState& state, const std::string& where);
+
+/// Reads one conformal factor of V values. Throws FileError.
+std::vector<double> read_factor(const FactorSource& source, std::size_t vertex_count);
 
 /// Group of an item within a file.
 std::string item_path(const std::string& item);

@@ -38,7 +38,7 @@ struct RunStore::Impl {
     void start_afresh(bool resume);
     void resume_journal();
     bool resume_output();
-    void write_segment(const std::string& kind, const std::string& item, std::vector<Index> vertices,
+    void write_segment(const std::string& kind, const std::string& item, const std::vector<Index>& vertices,
                        const std::function<void(hid_t item_group)>& fill);
     ItemState& writable_item(const std::string& name);
     [[nodiscard]] const ItemState* find_item(const std::string& name) const;
@@ -85,6 +85,7 @@ bool RunStore::Impl::resume_output() {
         SegmentFolder::require_same_run(output, {stored.fingerprint, stored.status.names}, header());
     }
     merge_contents(state, read_contents(output, output, info.status));
+    require_rows_of_vertices(state, output);
     return true;
 }
 
@@ -106,18 +107,21 @@ void RunStore::Impl::resume_journal() {
         [](const JournalEntry& entry) {
             const std::string what = fmt::format("{} of {}", entry.kind, entry.item);
             if (entry.kind != "sweep") return what;
-            return fmt::format("{} ({} vertices from {} to {})", what, entry.vertices.size(),
-                               entry.vertices.empty() ? -1 : entry.vertices.front(),
-                               entry.vertices.empty() ? -1 : entry.vertices.back());
+            std::int64_t count = 0;
+            for (const VertexRun& run : entry.vertices) count += run.count;
+            if (count == 0) return what + " (no vertices)";
+            return fmt::format("{} ({} vertices from {} to {})", what, count, entry.vertices.front().first,
+                               entry.vertices.back().first + (entry.vertices.back().count - 1));
         });
+    require_rows_of_vertices(state, parts.folder());
 }
 
 void RunStore::Impl::write_segment(const std::string& kind, const std::string& item,
-                                   std::vector<Index> vertices,
+                                   const std::vector<Index>& vertices,
                                    const std::function<void(hid_t item_group)>& fill) {
     std::optional<RunState> part;
     parts.write_segment(
-        {kind, "", item, std::move(vertices), 0, {}},
+        {kind, "", item, runs_of(vertices), 0, {}},
         [&](hid_t root) {
             const hdf5::Handle items = hdf5::create_group(root, "items");
             const hdf5::Handle group = hdf5::create_group(items, item);
@@ -250,6 +254,7 @@ void RunStore::write_item(const ItemRecord& item) {
     if (known != nullptr && !known->file.empty())
         throw std::invalid_argument("item " + name + " is stored already");
     impl_->write_segment("item", name, {}, [&](hid_t group) { schema::write_item(group, item); });
+    require_rows_of_vertices(impl_->state, impl_->parts.folder());  // of rows that came before their mesh
 }
 
 void RunStore::write_sweep_block(const SweepBlock& block) {
@@ -274,7 +279,7 @@ void RunStore::write_sweep_block(const SweepBlock& block) {
         vertices.push_back(row.vertex);
     }
     if (rows.empty()) return;
-    impl_->write_segment("sweep", name, std::move(vertices), [&](hid_t group) {
+    impl_->write_segment("sweep", name, vertices, [&](hid_t group) {
         const hdf5::Handle sweep = hdf5::create_group(group, "sweep");
         schema::write_rows(sweep, rows, impl_->info.status);
         if (block.kept.empty()) return;

@@ -187,14 +187,14 @@ struct StoredRun {
     std::vector<FailureRecord> failures;
 };
 
-/// Reads a whole result file. Throws FileError on anything that does not keep the contract, naming the
-/// object.
+/// Reads a whole result file, once a child process has walked over it (io/store/foreign_file.h). Throws
+/// FileError on anything that does not keep the contract, naming the object.
 StoredRun read_run(const std::string& path);
 
 /// Structural check: openable, attributes, shapes, enum, order, checksums, best/worst consistent with the
 /// rows, and any left-over parts folder's journal against its segments. Returns complaints, empty when sound.
-/// The file is opened in a child process under time and memory limits, for damaged HDF5 can loop or crash;
-/// read_run has no such protection. Throws FileError when no child can be had.
+/// The file is read in a child process under time and memory limits, for damaged HDF5 can loop or crash.
+/// Throws FileError when no child can be had.
 std::vector<std::string> verify_structure(const std::string& path);
 
 /// Exports, written under a temporary name and renamed: ".vtu" (XML with inline base64 arrays) and ".vtkhdf"

@@ -320,6 +320,11 @@ FlowRecord read_flow(hid_t group, const std::string& item, std::size_t vertex_co
     flow.log_step = hdf5::read_array<double>(log, "step", per_step);
     flow.log_flips = hdf5::read_array<std::int32_t>(log, "flips", per_step);
     flow.log_seconds = hdf5::read_array<double>(log, "seconds", per_step);
+    try {
+        require_valid(flow, vertex_count, status);
+    } catch (const std::invalid_argument& error) {
+        throw FileError(error.what());
+    }
     return flow;
 }
 

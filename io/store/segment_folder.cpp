@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "io/store/foreign_file.h"
 #include "io/store/verify_file.h"
 
 namespace ricci {
@@ -114,6 +115,7 @@ void SegmentFolder::resume(
         if (damage.empty()) {
             try {
                 const hdf5::Session session;
+                hdf5::require_known_form(path);
                 accept(path, entry);
                 continue;
             } catch (const FileError& error) {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "io/store/durable.h"
+#include "io/store/foreign_file.h"
 #include "io/store/guarded_child.h"
 #include "io/store/hdf5_file.h"
 #include "io/store/journal.h"
@@ -149,10 +150,12 @@ void check_index(hid_t root, const StatusNames& status, Complaints& complaints) 
 }
 
 // Runs in the child.
-Complaints check_contents(const std::string& path) {
+Complaints check_contents(const std::string& path, std::uint64_t bytes) {
     Complaints complaints;
     try {
         const hdf5::Handle file = hdf5::open_input(path);
+        complaints = hdf5::form_complaints(file, bytes);
+        if (!complaints.empty()) return complaints;  // nothing more can be read with safety
         complaints = hdf5::checksum_complaints(file, "/");
         const RunInfo info = schema::read_run_info(file);
         if (hdf5::read_attribute<std::int32_t>(file, "complete") != 1)
@@ -203,10 +206,8 @@ std::vector<std::string> verify_result_file(const std::string& path) {
     const std::uintmax_t bytes = std::filesystem::file_size(path, error);
     if (error) return {system_error(path, "cannot read", error.value()).what()};
     const hdf5::Session session;
-    // A megabyte per second is slower than any disk worth the name; datasets unpack to a few times their
-    // size.
-    const ChildLimits limits{60 + bytes / 1000000, (std::uint64_t{2} << 30U) + 16 * bytes};
-    Complaints complaints = run_guarded(limits, [&] { return check_contents(path); });
+    Complaints complaints =
+        run_guarded(foreign_file_limits(bytes), [&] { return check_contents(path, bytes); });
     for (std::string& complaint : complaints)
         if (!complaint.starts_with(path)) complaint.insert(0, path + ": ");
     return complaints;

@@ -118,6 +118,38 @@ TEST(SweepConfig, RefusesUnknownSolversAndLanes) {
     EXPECT_THROW(sweep_options(c), UsageError);
 }
 
+TEST(SweepConfig, RefusesNumbersOutOfRange) {
+    const auto refused = [](const std::string& text) {
+        const SweepConfig c = sweep_config_from_toml(text, "c.toml");
+        EXPECT_THROW(sweep_options(c), UsageError) << text;
+    };
+    for (const char* tolerance : {"0", "-1", "inf", "nan"})
+        refused(std::string("[solve]\ntolerance = ") + tolerance + "\n");
+    refused("[solve]\nmax_iterations = -1\n");
+    refused("[run]\nthreads = -1\n");
+    refused("[run]\nthreads = 5000\n");
+    refused("[run]\ntimeout = -0.5\n");
+    refused("[run]\ntimeout = nan\n");
+    EXPECT_THROW(sweep_config_from_toml("[run]\nthreads = 4294967297\n", "c.toml"), UsageError);
+    EXPECT_THROW(parse_keep("-1"), UsageError);
+    EXPECT_EQ(parse_keep("7").count, 7);
+    for (const char* bytes : {"1e300T", "inf", "nan", "-1G", "9e18"})
+        EXPECT_THROW(parse_bytes(bytes), UsageError) << bytes;
+}
+
+TEST(VertexChoice, ListsThatAreNoneAreRefused) {
+    const TemporaryFolder folder;
+    EXPECT_THROW(read_vertex_list(folder / "."), FileError);  // a folder, which opens as an empty file
+    write_text(folder / "v.txt", std::string(1'000'000, '7') + "\n");
+    try {
+        read_vertex_list(folder / "v.txt");
+        FAIL() << "taken in";
+    } catch (const UsageError& error) {
+        EXPECT_EQ(std::string(error.what()),
+                  (folder / "v.txt") + ":1: '" + std::string(40, '7') + "...' is not a number");
+    }
+}
+
 TEST(Curvature, ParsesMultiplesOfPi) {
     const double pi = std::numbers::pi;
     EXPECT_DOUBLE_EQ(parse_curvature("-4pi"), -4 * pi);

@@ -153,6 +153,34 @@ TEST(StoreCrashes, DamagedJournalLines) {
     EXPECT_TRUE(fs::exists(journal));  // and nothing is thrown away
 }
 
+// Lines with a right checksum that no run has written: names that lead out of the folder, vertices by the
+// billion.
+TEST(Journal, RefusesWhatNoRunWrites) {
+    const TemporaryFolder folder;
+    const std::string parts = folder.file("run.h5.parts");
+    fs::create_directory(parts);
+    const auto refused = [&](const std::string& entry) {
+        const JournalHeader header{"f", {"converged"}};
+        Journal::create(parts, header);
+        const std::string line = entry.substr(0, entry.size() - 1);
+        std::ofstream(journal_path(parts), std::ios::app)
+            << line << ",\"line\":\"" << hex16(checksum_of(std::string_view(line))) << "\"}\n";
+        try {
+            read_journal(parts);
+            ADD_FAILURE() << entry;
+        } catch (const FileError& error) {
+            EXPECT_NE(std::string(error.what()).find("not a journal of this program"), std::string::npos);
+        }
+    };
+    for (const char* name : {"../run.h5", "/etc/passwd", "..", "."})
+        refused(std::string(R"({"kind":"item","item":"a","checksum":"0","name":")") + name + "\"}");
+    for (const char* runs :
+         {"[[0,2147483647],[2147483647,1]]", "[[-1,2]]", "[[5,1],[4,1]]", "[[0,0]]", "[[0]]", "7"})
+        refused(std::string(R"({"kind":"sweep","item":"a","checksum":"0","name":"s.h5","vertices":)") + runs +
+                "}");
+    refused(R"({"kind":"item","item":"a","checksum":"zz","name":"s.h5"})");
+}
+
 TEST(StoreCrashes, DamagedSegmentIsDroppedAndRedone) {
     const TemporaryFolder folder;
     const std::string path = folder.file("run.h5");

@@ -71,7 +71,7 @@ class PipeRecords final : public SweepRecords {
 
 void sweep_in_child(ParentChannel& parent, const ChildShare& share, MessageReader& job) {
     const SweepSource source{job.get_text(), job.get_text()};
-    const SweepConfig config = parse_sweep_config(job.get_text(), "configuration");
+    const SweepConfig config = sweep_config_from_toml(job.get_text(), "configuration");
     job.end();
     PipeRecords records(parent, share);
     ProgressLine progress(true);

@@ -48,8 +48,11 @@ class SurfaceDrawing {
           picture_(frame_.width, frame_.height, frame_.view),
           image_(view_.bounds(), std::max(16, static_cast<int>(options.pixels)), view_.depth_range()),
           pieces_of_(at(view_.face_count())) {
-        for (Index p = 0; p < stored.refinement.piece_count(); ++p)
-            pieces_of_[at(stored.refinement.input_face[at(p)])].push_back(p);
+        for (Index p = 0; p < stored.refinement.piece_count(); ++p) {
+            const Index face = stored.refinement.input_face[at(p)];
+            if (face < view_.face_count())
+                pieces_of_[at(face)].push_back(p);  // others have no edges to be seen by
+        }
         for (Index f = 0; f < view_.face_count(); ++f)
             if (view_.has(f)) image_.add(view_.triangle(f));
     }

@@ -185,6 +185,8 @@ ViewBox box_of(std::span<const PlanePoint> points) {
             low[k] = std::min(low[k], p[k]);
             high[k] = std::max(high[k], p[k]);
         }
+    if (!std::isfinite(high[0] - low[0]) || !std::isfinite(high[1] - low[1]))
+        throw std::invalid_argument("what is to be drawn is larger than double precision can say");
     return {low[0], low[1], high[0] - low[0], high[1] - low[1]};
 }
 

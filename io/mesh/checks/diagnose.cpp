@@ -1,12 +1,15 @@
 #include "io/mesh/checks/diagnose.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
 #include "io/mesh/checks/collinear.h"
 #include "io/mesh/checks/orientation.h"
 #include "io/mesh/checks/quality.h"
+#include "io/mesh/repair/repair_triangles.h"
+#include "kernels/point_distance.h"
 
 namespace ricci {
 namespace {
@@ -149,7 +152,15 @@ class Diagnosis {
     void check_lengths() {
         for (Index e = 0; e < edges_.count(); ++e) {
             const Index h = edges_.of(e)[0];
-            if (points_[to_size(soup_.tail(h))] != points_[to_size(soup_.head(h))]) continue;
+            const Point& tail = points_[to_size(soup_.tail(h))];
+            const Point& head = points_[to_size(soup_.head(h))];
+            if (!std::isfinite(point_distance(tail, head))) {
+                errors_.add("not_finite", "edge", e, [&] {
+                    return edge_name(h) + " of face " + std::to_string(soup_.source(h)) +
+                           " is longer than the range of double precision; scale the mesh down";
+                });
+            }
+            if (tail != head) continue;
             errors_.add("zero_length_edge", "edge", e, [&] {
                 return edge_name(h) + " of face " + std::to_string(soup_.source(h)) +
                        " has length zero: its vertices have equal coordinates; --repair weld,drop-degenerate "
@@ -158,15 +169,18 @@ class Diagnosis {
         }
     }
 
-    [[nodiscard]] const char* flat_advice(bool needle) const {
+    [[nodiscard]] std::string flat_advice(bool needle) const {
         if (needle) return "two of its vertices have equal coordinates; --repair weld,drop-degenerate helps";
         if (!repair_.drop_degenerate)
             return "its vertices lie exactly on one line; --repair drop-degenerate helps";
-        return "its vertices lie exactly on one line, and it cannot be repaired: flipping its longest edge "
+        return std::string(
+                   "its vertices lie exactly on one line, and it cannot be repaired: flipping its longest "
+                   "edge ") +
                "would "
                "double an edge, or that edge is non-manifold or borders on another face that cannot be "
                "repaired, or "
-               "it belongs to a chain of more than 1000 such faces";
+               "it belongs to a chain of more than " +
+               std::to_string(flat_rounds(soup_.triangles.size())) + " such faces";
     }
 
     void check_areas() {

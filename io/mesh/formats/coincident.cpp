@@ -4,6 +4,8 @@
 
 #include <bit>
 
+#include "io/mesh/checks/hash_seed.h"
+
 namespace ricci {
 namespace {
 
@@ -22,11 +24,12 @@ std::vector<Index> first_at_position(std::span<const Point> points,
     const std::size_t slots = std::bit_ceil(2 * points.size() + 1);
     std::vector<Index> table(slots, -1);  // open addressing, linear probing
     std::vector<Index> first(points.size());
+    const std::uint64_t seed = hash_seed();
     for (std::size_t i = 0; i < points.size(); ++i) {
         first[i] = static_cast<Index>(i);
         if (!considered.empty() && considered[i] == 0) continue;
         const Key key = key_of(points[i]);
-        std::size_t slot = XXH3_64bits(key.data(), sizeof key) & (slots - 1);
+        std::size_t slot = XXH3_64bits_withSeed(key.data(), sizeof key, seed) & (slots - 1);
         while (table[slot] >= 0 && key_of(points[static_cast<std::size_t>(table[slot])]) != key) {
             slot = (slot + 1) & (slots - 1);
         }

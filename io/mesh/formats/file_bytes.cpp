@@ -2,11 +2,14 @@
 
 #include <zlib.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <system_error>
+#include <vector>
 
 #include "io/mesh/mesh_file.h"
 
@@ -22,42 +25,93 @@ std::string last_error() {
     return std::generic_category().message(errno);
 }
 
+[[noreturn]] void throw_too_large(const std::string& path) {
+    throw FileError(path + ": is larger than 64 GiB, beyond any mesh of 32-bit indices");
+}
+
 struct EndInflate {
     void operator()(z_stream* stream) const { inflateEnd(stream); }
 };
 
-constexpr std::size_t kMaxUnpacked = std::size_t{1} << 34;
+constexpr std::size_t kFreeUnpacked = std::size_t{1} << 26, kMaxRatio = 200;
+std::atomic<std::uint64_t> max_unpacked = 0;
 
-/// Unpacks one member of a gzip file to the end of `out`; returns the number of bytes it took from `packed`.
-std::size_t unpack_member(std::string_view packed, const std::string& path, std::string& out) {
-    constexpr std::size_t kChunk = std::size_t{1} << 20;
-    z_stream stream{};
-    if (inflateInit2(&stream, 15 + 16) != Z_OK) throw FileError(path + ": zlib cannot start");
-    const std::unique_ptr<z_stream, EndInflate> end(&stream);
-    std::size_t consumed = 0;
-    int state = Z_OK;
-    while (state != Z_STREAM_END) {
-        if (stream.avail_in == 0 && consumed < packed.size()) {
-            const std::size_t take = std::min(packed.size() - consumed, kChunk);
-            stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data() + consumed));
-            stream.avail_in = static_cast<uInt>(take);
-            consumed += take;
-        }
-        const std::size_t filled = out.size();
-        if (filled > kMaxUnpacked) throw FileError(path + ": unpacks to more than 16 GiB");
-        out.resize(filled + kChunk);
-        stream.next_out = reinterpret_cast<Bytef*>(out.data() + filled);
-        stream.avail_out = static_cast<uInt>(kChunk);
-        state = inflate(&stream, Z_NO_FLUSH);
-        out.resize(filled + kChunk - stream.avail_out);
-        if (state == Z_BUF_ERROR) throw FileError(path + ": the gzip data are cut off");
-        if (state != Z_OK && state != Z_STREAM_END) {
-            throw FileError(path + ": the gzip data are damaged (" +
-                            (stream.msg ? stream.msg : "no reason given") + ")");
+/// Unpacks gzip members one after the other; one state for all of them, which may be millions of empty ones.
+/// Twice: the first time the bytes are only counted, so that a bomb fills no memory and the rest takes no
+/// more than it needs.
+class Unpacker {
+  public:
+    Unpacker(std::string_view packed, const std::string& path)
+        : packed_(packed), path_(path), limit_(unpack_limit(packed.size())) {
+        if (inflateInit2(&stream_, 15 + 16) != Z_OK) throw FileError(path + ": zlib cannot start");
+        end_.reset(&stream_);
+    }
+
+    std::string run() {
+        members();
+        out_.resize(count_);
+        count_ = 0;
+        members();
+        return std::move(out_);
+    }
+
+  private:
+    void members() {
+        rest_ = packed_;
+        while (!rest_.empty()) {
+            member();
+            // Tapes pad with zeros; anything else must be a further member.
+            if (rest_.find_first_not_of('\0') == std::string_view::npos) return;
+            if (rest_.substr(0, 2) != "\x1f\x8b")
+                throw FileError(path_ + ": other data follow the gzip data");
         }
     }
-    return consumed - stream.avail_in;
-}
+
+    /// Takes one member from the front of what is left.
+    void member() {
+        inflateReset(&stream_);
+        stream_.avail_in = 0;
+        int state = Z_OK;
+        while (state != Z_STREAM_END) {
+            if (stream_.avail_in == 0) {
+                const std::size_t take = std::min(rest_.size(), kPiece);
+                stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(rest_.data()));
+                stream_.avail_in = static_cast<uInt>(take);
+                rest_.remove_prefix(take);
+            }
+            stream_.next_out = reinterpret_cast<Bytef*>(buffer_.data());
+            stream_.avail_out = static_cast<uInt>(buffer_.size());
+            state = inflate(&stream_, Z_NO_FLUSH);
+            append(buffer_.size() - stream_.avail_out);
+            if (state == Z_BUF_ERROR) throw FileError(path_ + ": the gzip data are cut off");
+            if (state != Z_OK && state != Z_STREAM_END) {
+                throw FileError(path_ + ": the gzip data are damaged (" +
+                                (stream_.msg ? stream_.msg : "no reason given") + ")");
+            }
+        }
+        rest_ = {rest_.data() - stream_.avail_in, rest_.size() + stream_.avail_in};
+    }
+
+    /// Of the buffer.
+    void append(std::size_t count) {
+        if (count > limit_ - count_) {
+            throw FileError(
+                path_ + ": unpacks to more than " + std::to_string(limit_) +
+                " bytes, the limit for a file of this size; --max-unpacked raises it (at most 16G)");
+        }
+        std::copy_n(buffer_.data(), out_.empty() ? 0 : count, out_.data() + (out_.empty() ? 0 : count_));
+        count_ += count;
+    }
+
+    static constexpr std::size_t kPiece = std::size_t{1} << 20;
+    std::string_view packed_, rest_;
+    const std::string& path_;
+    std::size_t limit_, count_ = 0;  // bytes unpacked so far
+    z_stream stream_{};
+    std::unique_ptr<z_stream, EndInflate> end_;
+    std::vector<char> buffer_ = std::vector<char>(std::size_t{1} << 16);
+    std::string out_;
+};
 
 }  // namespace
 
@@ -72,30 +126,36 @@ std::string read_file_bytes(const std::string& path) {
     constexpr std::size_t kChunk = std::size_t{1} << 16;
     // One byte beyond the known size, so that a regular file ends in the first round; pipes grow as they
     // come.
-    std::size_t chunk = error ? kChunk : static_cast<std::size_t>(size) + 1;
+    std::size_t chunk =
+        error ? kChunk : static_cast<std::size_t>(std::min<std::uintmax_t>(size, kMaxFileBytes)) + 1;
     std::size_t filled = 0;
+    if (!error && size > kMaxFileBytes) throw_too_large(path);
     while (true) {
+        if (filled > kMaxFileBytes) throw_too_large(path);
         bytes.resize(filled + chunk);
         const std::size_t got = std::fread(bytes.data() + filled, 1, chunk, file.get());
         filled += got;
         if (got < chunk) break;
-        chunk = kChunk;
+        chunk = std::max(kChunk, filled / 2);
     }
     if (std::ferror(file.get()) != 0) throw FileError(path + ": cannot be read: " + last_error());
     bytes.resize(filled);
     return bytes;
 }
 
+std::size_t unpack_limit(std::size_t packed) {
+    const std::uint64_t chosen = max_unpacked.load();
+    if (chosen > 0) return std::min<std::size_t>(chosen, kMaxUnpackedBytes);
+    return std::clamp(kMaxRatio * packed, kFreeUnpacked, kMaxUnpackedBytes);
+}
+
+void set_max_unpacked(std::uint64_t bytes) {
+    max_unpacked = bytes;
+}
+
 std::string unpack_gzip(std::string_view packed, const std::string& path) {
     if (packed.substr(0, 2) != "\x1f\x8b") throw FileError(path + ": is named .gz but holds no gzip data");
-    std::string out;
-    while (!packed.empty()) {
-        packed.remove_prefix(unpack_member(packed, path, out));
-        // Tapes pad with zeros; anything else must be a further member.
-        if (packed.find_first_not_of('\0') == std::string_view::npos) break;
-        if (packed.substr(0, 2) != "\x1f\x8b") throw FileError(path + ": other data follow the gzip data");
-    }
-    return out;
+    return Unpacker(packed, path).run();
 }
 
 void write_file_bytes(const std::string& path, std::string_view bytes) {

@@ -1,6 +1,7 @@
 #include "io/mesh/formats/ply_header.h"
 
 #include <array>
+#include <set>
 #include <utility>
 
 #include "io/mesh/formats/polygon_soup.h"
@@ -68,36 +69,49 @@ PlyProperty parse_property(Tokens tokens) {
     return property;
 }
 
-void add_property(PlyHeader& header, Tokens& tokens) {
-    if (header.elements.empty()) tokens.fail("a property before the first element");
-    PlyElement& element = header.elements.back();
-    PlyProperty property = parse_property(tokens);
-    for (const PlyProperty& other : element.properties) {
-        if (other.name == property.name)
-            tokens.fail("property " + shown(property.name) + " is declared twice");
+/// The statements of a header, taken in one after the other.
+class HeaderReader {
+  public:
+    /// False at the end of the header.
+    bool statement(Tokens& tokens) {
+        const std::string_view word = tokens.next();
+        if (word == "end_header") {
+            // The line after "ply" must give the format; other statements come in any order.
+            if (!have_format_) tokens.fail("the header has no format line");
+            return false;
+        }
+        if (word == "format") {
+            header_.encoding = parse_encoding(tokens);
+            have_format_ = true;
+        } else if (word == "element") {
+            add_element(tokens);
+        } else if (word == "property") {
+            add_property(tokens);
+        } else if (word != "comment" && word != "obj_info" && !word.empty()) {
+            tokens.fail("unknown statement " + shown(word) + " in the PLY header");
+        }
+        return true;
     }
-    element.properties.push_back(std::move(property));
-}
+    PlyHeader take() { return std::move(header_); }
 
-/// The line after "ply" must give the format; other statements in any order.
-bool statement(PlyHeader& header, Tokens& tokens, bool& have_format) {
-    const std::string_view word = tokens.next();
-    if (word == "end_header") {
-        if (!have_format) tokens.fail("the header has no format line");
-        return false;
+  private:
+    void add_element(Tokens& tokens) {
+        header_.elements.push_back(parse_element(tokens));
+        names_.clear();
     }
-    if (word == "format") {
-        header.encoding = parse_encoding(tokens);
-        have_format = true;
-    } else if (word == "element") {
-        header.elements.push_back(parse_element(tokens));
-    } else if (word == "property") {
-        add_property(header, tokens);
-    } else if (word != "comment" && word != "obj_info" && !word.empty()) {
-        tokens.fail("unknown statement " + shown(word) + " in the PLY header");
+
+    void add_property(Tokens& tokens) {
+        if (header_.elements.empty()) tokens.fail("a property before the first element");
+        PlyProperty property = parse_property(tokens);
+        if (!names_.insert(property.name).second)
+            tokens.fail("property " + shown(property.name) + " is declared twice");
+        header_.elements.back().properties.push_back(std::move(property));
     }
-    return true;
-}
+
+    PlyHeader header_;
+    std::set<std::string> names_;  // of the last element's properties: a header may hold a million of them
+    bool have_format_ = false;
+};
 
 }  // namespace
 
@@ -108,8 +122,7 @@ std::size_t ply_size(PlyType type) {
 
 PlyHeader parse_ply_header(std::string_view bytes) {
     TextLines lines(bytes);
-    PlyHeader header;
-    bool have_format = false;
+    HeaderReader reader;
     if (!lines.next() || lines.tokens().next() != "ply") {
         throw ContentError("syntax", 1, "line 1: a PLY file begins with the word ply");
     }
@@ -120,8 +133,9 @@ PlyHeader parse_ply_header(std::string_view bytes) {
                 "the file ends within the PLY header, after line " + std::to_string(lines.number()));
         }
         Tokens tokens = lines.tokens();
-        if (!statement(header, tokens, have_format)) break;
+        if (!reader.statement(tokens)) break;
     }
+    PlyHeader header = reader.take();
     header.body = bytes.size() - lines.remaining();
     header.header_lines = lines.number();
     return header;

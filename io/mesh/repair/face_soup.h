@@ -35,10 +35,12 @@ FaceSoup distinct_corners(const PolygonSoup& soup, bool drop, DefectList& errors
 /// at the lowest vertex), larger ones by clipping the ear with the largest smallest angle, tested in the
 /// projection along the main axis of the polygon's normal. Diagonals that already are edges of the mesh are
 /// avoided, and so are triangles of zero area. Deterministic; with a note. Polygons of more than kMaxCorners
-/// are reported (polygon_too_large).
+/// are reported, and so are those with which the sum of (corners)^2 over polygons of more than kFreeCorners
+/// exceeds kMaxWork (polygon_too_large).
 TriangleSoup triangulate(const FaceSoup& faces, std::span<const Point> points, DefectList& errors,
                          DefectList& notes);
-inline constexpr std::size_t kMaxCorners = 10000;
+inline constexpr std::size_t kMaxCorners = 10000, kFreeCorners = 64;
+inline constexpr std::size_t kMaxWork = 1'000'000'000;
 
 /// "3, 5, 8, ..." for messages: the first few of a list of numbers.
 std::string listed(std::span<const Index> numbers);

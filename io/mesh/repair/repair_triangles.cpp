@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <string>
+#include <unordered_set>
 #include <utility>
 
 #include "io/mesh/checks/collinear.h"
+#include "io/mesh/checks/hash_seed.h"
 #include "io/mesh/checks/orientation.h"
 #include "io/mesh/repair/face_soup.h"
 
@@ -36,9 +38,10 @@ class FlatFaceRemover {
     }
 
     void run(DefectList& notes) {
-        // Each round shortens or removes flat faces; a chain of n takes at most about n rounds.
-        constexpr int kMaxRounds = 1000;
-        for (int round = 0; round < kMaxRounds && !flat_.empty(); ++round) {
+        // Each round shortens or removes flat faces; a chain of n takes at most about n rounds. A round looks
+        // at all faces.
+        const std::size_t rounds = flat_rounds(soup_.triangles.size());
+        for (std::size_t round = 0; round < rounds && !flat_.empty(); ++round) {
             if (!change_once()) break;
         }
         note(notes, "dropped_face", "faces of zero area on the boundary dropped (they covered nothing)",
@@ -51,6 +54,11 @@ class FlatFaceRemover {
   private:
     [[nodiscard]] bool is_flat(const Triangle& t) const {
         return collinear(points_[to_size(t[0])], points_[to_size(t[1])], points_[to_size(t[2])]);
+    }
+
+    static std::uint64_t pair_key(Index a, Index b) {
+        return (static_cast<std::uint64_t>(std::min(a, b)) << 32U) |
+               static_cast<std::uint64_t>(std::max(a, b));
     }
 
     static void note(DefectList& notes, const char* code, const std::string& what,
@@ -115,7 +123,7 @@ class FlatFaceRemover {
         flipped_.push_back(soup_.source_face[to_size(f)]);
         soup_.source_face[to_size(f)] = soup_.source_face[to_size(g)];
         touched_[to_size(f)] = touched_[to_size(g)] = 1;
-        added_.push_back(std::minmax({b, d}));
+        added_.insert(pair_key(b, d));
         return true;
     }
 
@@ -130,8 +138,7 @@ class FlatFaceRemover {
 
     [[nodiscard]] bool is_edge(Index a, Index b) const {
         const std::pair<Index, Index> key = std::minmax({a, b});
-        return std::binary_search(sorted_.begin(), sorted_.end(), key) ||
-               std::find(added_.begin(), added_.end(), key) != added_.end();
+        return std::binary_search(sorted_.begin(), sorted_.end(), key) || added_.contains(pair_key(a, b));
     }
 
     /// Takes dropped triangles out and looks which are flat now.
@@ -156,11 +163,11 @@ class FlatFaceRemover {
 
     TriangleSoup& soup_;
     std::span<const Point> points_;
-    std::vector<Index> flat_;                      // ascending
-    std::vector<std::uint8_t> touched_;            // F, in this round
-    std::vector<std::pair<Index, Index>> sorted_;  // edges at the start of the round
-    std::vector<std::pair<Index, Index>> added_;   // edges made in this round
-    std::vector<Index> dropped_, flipped_;         // faces of the input
+    std::vector<Index> flat_;                              // ascending
+    std::vector<std::uint8_t> touched_;                    // F, in this round
+    std::vector<std::pair<Index, Index>> sorted_;          // edges at the start of the round
+    std::unordered_set<std::uint64_t, SeededHash> added_;  // edges made in this round
+    std::vector<Index> dropped_, flipped_;                 // faces of the input
 };
 
 }  // namespace
@@ -181,6 +188,11 @@ void orient_faces(TriangleSoup& soup, Index vertex_count, DefectList& notes) {
         notes.add("oriented", "face", flipped.front(),
                   std::to_string(flipped.size()) + " faces flipped: " + listed(flipped));
     }
+}
+
+std::size_t flat_rounds(std::size_t faces) {
+    constexpr std::size_t kMaxRounds = 1000, kMinRounds = 20, kMaxVisits = 10'000'000;
+    return std::clamp(kMaxVisits / std::max<std::size_t>(faces, 1), kMinRounds, kMaxRounds);
 }
 
 void remove_flat_faces(TriangleSoup& soup, std::span<const Point> points, DefectList& notes) {

@@ -4,6 +4,7 @@
 #include <unordered_set>
 
 #include "io/mesh/checks/collinear.h"
+#include "io/mesh/checks/hash_seed.h"
 #include "io/mesh/checks/quality.h"
 #include "io/mesh/repair/face_soup.h"
 
@@ -75,6 +76,19 @@ class Triangulator {
                 return "face " + std::to_string(source_) + " has " + std::to_string(face.size()) +
                        " corners; more than " + std::to_string(kMaxCorners) +
                        " are not triangulated here, cut the polygon into triangles first";
+            });
+            return;
+        }
+        // Ears are tested against all corners: quadratic in a polygon, which is a matter of seconds for one
+        // of kMaxCorners and of hours for thousands of them.
+        work_ += face.size() > kFreeCorners ? face.size() * face.size() : 0;
+        if (work_ > kMaxWork) {
+            errors.add("polygon_too_large", "face", source_, [&] {
+                return "face " + std::to_string(source_) + " has " + std::to_string(face.size()) +
+                       " corners, and the squares of the corner counts of all polygons above " +
+                       std::to_string(kFreeCorners) + " corners up to here exceed " +
+                       std::to_string(kMaxWork) +
+                       "; so many large polygons are not triangulated here, cut them into triangles first";
             });
             return;
         }
@@ -209,8 +223,9 @@ class Triangulator {
     const FaceSoup& faces_;
     std::span<const Point> points_;
     TriangleSoup soup_;
-    std::unordered_set<std::uint64_t> edges_;  // of polygons and diagonals chosen so far
+    std::unordered_set<std::uint64_t, SeededHash> edges_;  // of polygons and diagonals chosen so far
     Index source_ = 0;
+    std::size_t work_ = 0;  // sum of squares of corner counts
     std::array<Long, 3> normal_{};
     std::vector<std::array<double, 2>> flat_;
     std::vector<std::size_t> next_, prev_;
