@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# What --isolate costs: the same sweeps with and without, best of several runs. Prints a table.
+# What --isolate costs: the same sweeps with and without; wall clock and processor time, each the least of
+# several runs. Prints a table.
 #   bench/isolation_cost.sh [build/bin/ricci [THREADS [RUNS]]]
 set -euo pipefail
 ricci=$(readlink -f "${1:-build/bin/ricci}") threads=${2:-2} runs=${3:-5}
@@ -15,29 +16,25 @@ meshes() {
     for ((k = 1; k < copies; ++k)); do cp meshes/m000.off "meshes/m$(printf %03d "$k").off"; done
 }
 
-# Seconds of the fastest of the runs.
+# Least seconds by the clock, and of processors.
 seconds() {
-    local best= start end took k
+    local k
+    TIMEFORMAT='%R %U %S'
     for ((k = 0; k < runs; ++k)); do
-        start=$(date +%s%N)
-        "$ricci" sweep meshes --threads "$threads" -q -o out.h5 "$@" >/dev/null
-        end=$(date +%s%N)
-        took=$(awk "BEGIN { print ($end - $start) / 1e9 }")
-        best=$(awk "BEGIN { print \"$best\" == \"\" || $took < $best + 0 ? $took : $best }")
-    done
-    echo "$best"
+        { time "$ricci" sweep meshes --threads "$threads" -q -o out.h5 "$@" >/dev/null; } 2>&1
+    done | awk '{ r = $1; c = $2 + $3; if (NR == 1 || r < R) R = r; if (NR == 1 || c < C) C = c } END { print R, C }'
 }
 
-printf '%6s %7s %-11s %9s %9s %9s %12s\n' files faces vertices plain isolated ratio 'ms per file'
+printf '%5s %6s %-11s %8s %8s %8s %8s %15s\n' files faces vertices plain isolated 'plain' 'isolated' 'CPU ms per file'
+printf '%5s %6s %-11s %17s %17s\n' '' '' '' 'clock, s' 'processors, s'
 while read -r copies faces vertices; do
     meshes "$copies" "$faces"
-    plain=$(seconds --vertices "$vertices") isolated=$(seconds --vertices "$vertices" --isolate)
-    awk -v c="$copies" -v f="$faces" -v v="$vertices" -v p="$plain" -v i="$isolated" 'BEGIN {
-        printf "%6d %7d %-11s %8.2fs %8.2fs %9.2f %12.1f\n", c, f, v, p, i, i / p, (i - p) / c * 1000 }'
+    echo "$copies $faces $vertices $(seconds --vertices "$vertices") $(seconds --vertices "$vertices" --isolate)" |
+        awk '{ printf "%5d %6d %-11s %8.2f %8.2f %8.2f %8.2f %15.1f\n", $1, $2, $3, $4, $6, $5, $7, ($7 - $5) / $1 * 1000 }'
 done <<'CASES'
-60 400 sample:16
-60 400 all
-20 2000 all
+60 400 sample:4
+60 400 sample:100
+20 2000 sample:200
 4 10000 sample:400
 1 10000 sample:800
 CASES

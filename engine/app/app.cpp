@@ -80,6 +80,8 @@ int run(int argc, char** argv) {
     add_generate(app, common, action);
     add_flow(app, common, action);
     add_sweep(app, common, action);
+    add_merge(app, common, action);
+    add_submit(app, common, action);
     add_layout(app, common, action);
     add_spectrum(app, common, action);
     add_teichmuller(app, common, action);

@@ -8,17 +8,11 @@
 #include "engine/app/isolation/failure_bundle.h"
 #include "engine/app/isolation/isolated_sweep.h"
 #include "engine/app/records.h"
+#include "engine/app/sweep_arguments.h"
 #include "engine/app/sweep_run.h"
 
 namespace ricci::app {
 namespace {
-
-/// Arguments as given; empty or zero where the configuration (or its default) rules.
-struct SweepArguments {
-    std::string config;
-    SweepConfig values;
-    bool dry_run = false;
-};
 
 nlohmann::json to_json(const ItemSummary& s) {
     const auto vertex = [](const std::optional<SweepRow>& row) {
@@ -82,13 +76,14 @@ double probe_seconds(const SweepTask& task) {
 }
 
 /// What would run: a few solves per item are timed, its memory predicted.
-int dry_run(const SweepConfig& config, const std::vector<std::string>& files, const CommonOptions& common) {
+int dry_run(const SweepConfig& config, const std::vector<std::string>& files, const SweepPlan& plan,
+            const CommonOptions& common) {
     ProgressLine progress(true);
     StoreRecords records(nullptr, false, progress);
-    SweepRun run(config, sweep_sources(files), records, progress);
+    SweepRun run(config, sweep_sources(files), plan, records, progress);
     const int threads = common.resolved_threads();
     double total = 0.0;
-    for (std::size_t f = 0; f < files.size(); ++f) {
+    for (std::size_t f = 0; f < plan.files().size(); ++f) {
         for (const SweepTask& task : run.open(f)) {
             const SweepSurface& surface = *task.surface;
             const double each = probe_seconds(task);
@@ -117,19 +112,31 @@ int dry_run(const SweepConfig& config, const std::vector<std::string>& files, co
 struct Swept {
     std::vector<SweepItem> items;
     bool any_failure = false;
+    std::optional<ShardTable> shard{};
 };
 
-Swept run_here(const SweepConfig& config, const std::vector<SweepSource>& sources, StoreRecords& records,
-               ProgressLine& progress, std::int64_t max_memory) {
+/// Everything, or this machine's part of it.
+SweepPlan make_plan(const SweepConfig& config, const std::vector<std::string>& files,
+                    const CommonOptions& common) {
+    if (config.shard.empty()) return {files.size(), parse_resolutions(config.resolutions).size()};
+    if (config.isolate) throw UsageError("--shard does not go with --isolate");
+    if (config.component >= 0) throw UsageError("--shard does not go with --component");
+    SweepPlan plan(config, files, common.resolved_threads());
+    spdlog::info("{}", plan.summary());
+    return plan;
+}
+
+Swept run_here(const SweepConfig& config, const std::vector<SweepSource>& sources, const SweepPlan& plan,
+               StoreRecords& records, ProgressLine& progress, std::int64_t max_memory) {
     SchedulerOptions options;
     options.threads = config.threads;
     options.max_memory = max_memory;
     options.timeout_seconds = config.timeout;
     options.stop = [] { return caught_signal() != 0; };
-    SweepRun run(config, sources, records, progress);
+    SweepRun run(config, sources, plan, records, progress);
     run_sweeps(
-        sources.size(), [&](std::size_t source) { return run.open(source); }, run, options);
-    return {run.items(), run.any_failure()};
+        plan.files().size(), [&](std::size_t i) { return run.open(i); }, run, options);
+    return {run.items(), run.any_failure(), plan.sharded() ? std::optional(run.shard_table()) : std::nullopt};
 }
 
 Swept run_in_children(const SweepConfig& config, const std::vector<SweepSource>& sources,
@@ -156,17 +163,21 @@ int report(const std::vector<ItemSummary>& summaries, bool failed, const std::st
 int sweep(const SweepConfig& config, const CommonOptions& common, bool dry) {
     const std::vector<std::string> files = expand_inputs(config.meshes);
     if (files.empty()) throw UsageError("no meshes: name them, or give a configuration with [input] meshes");
-    if (dry) return dry_run(config, files, common);
+    const SweepPlan plan = make_plan(config, files, common);
+    if (dry) return dry_run(config, files, plan, common);
     const std::int64_t max_memory = config.max_memory.empty() ? 0 : parse_bytes(config.max_memory);
-    RunStore store(config.output,
-                   make_run_info(to_toml(config, false), to_toml(config, true), config.threads),
+    // A shard cannot be resumed after its inputs have changed so that it would do something else.
+    const std::string fingerprint =
+        to_toml(config, true) + (plan.sharded() ? "# plan " + plan.digest() + "\n" : "");
+    RunStore store(config.output, make_run_info(to_toml(config, false), fingerprint, config.threads),
                    config.resume || config.retry_failed);
     for (const std::string& note : store.notes()) spdlog::warn("{}", note);
     catch_signals();
     ProgressLine progress(common.quiet);
     StoreRecords records(&store, config.retry_failed, progress);
-    const Swept swept = (config.isolate ? run_in_children : run_here)(config, sweep_sources(files), records,
-                                                                      progress, max_memory);
+    const std::vector<SweepSource> sources = sweep_sources(files);
+    const Swept swept = config.isolate ? run_in_children(config, sources, records, progress, max_memory)
+                                       : run_here(config, sources, plan, records, progress, max_memory);
     progress.clear();
     if (const int signal = caught_signal(); signal != 0) {
         spdlog::warn("stopped by a signal; what is finished is in {}.parts: continue with --resume",
@@ -175,18 +186,22 @@ int sweep(const SweepConfig& config, const CommonOptions& common, bool dry) {
     }
     records.forget_mended();
     const std::vector<ItemSummary> summaries = summaries_of(swept.items, &store);
-    store.assemble(stored_names(swept.items), parse_keep(config.keep));
+    store.assemble(stored_names(swept.items), parse_keep(config.keep), swept.shard ? &*swept.shard : nullptr);
     std::vector<std::string> failed_items;
     for (const FailureRecord& failure : store.failures()) failed_items.push_back(failure.item);
     remove_other_bundles(config.output, failed_items);
     return report(summaries, swept.any_failure, config.output, common);
 }
 
-/// Options given on the command line replace those of the configuration.
-SweepConfig merged(const CLI::App& command, const SweepArguments& a) {
+}  // namespace
+
+SweepConfig resolved_config(const CLI::App& command, const SweepArguments& a) {
     SweepConfig c = a.config.empty() ? SweepConfig{} : read_sweep_config(a.config);
     const SweepConfig& v = a.values;
-    const auto given = [&](const char* name) { return command.get_option(name)->count() > 0; };
+    const auto given = [&](const char* name) {
+        const CLI::Option* option = command.get_option_no_throw(name);
+        return option != nullptr && option->count() > 0;
+    };
     if (given("MESH")) c.meshes = v.meshes;
     if (given("--repair")) c.repair = v.repair;
     if (given("--scheme")) c.scheme = v.scheme;
@@ -214,12 +229,7 @@ SweepConfig merged(const CLI::App& command, const SweepArguments& a) {
     return c;
 }
 
-}  // namespace
-
-void add_sweep(CLI::App& app, CommonOptions& common, Action& action) {
-    auto* command =
-        app.add_subcommand("sweep", "The main job: every vertex in turn as the only cone, of every mesh");
-    auto a = std::make_shared<SweepArguments>();
+void add_sweep_options(CLI::App* command, SweepArguments* a) {
     SweepConfig& v = a->values;
     command->add_option("MESH", v.meshes, "Files, folders or globs");
     command->add_option("--config", a->config,
@@ -254,11 +264,18 @@ void add_sweep(CLI::App& app, CommonOptions& common, Action& action) {
         "extended (no lanes)");
     command->add_option("--lanes", v.lanes, "Vertices at a time on each thread, 1 to 16; default 16")
         ->check(CLI::Range(1, kLanes));
-    command
-        ->add_option("--component", v.component,
-                     "Only this component of each file (numbers as in item names, from 0)")
-        ->check(CLI::NonNegativeNumber);
     command->add_option("--repair", v.repair, "Changes to make: orient,weld,drop-degenerate");
+    command->add_option("--timeout", v.timeout, "Seconds per solve; 0: none")->check(CLI::NonNegativeNumber);
+    command->add_option("--max-memory", v.max_memory,
+                        "Bound on the predicted memory, like 8G; with --isolate on the memory itself");
+}
+
+void add_sweep(CLI::App& app, CommonOptions& common, Action& action) {
+    auto* command =
+        app.add_subcommand("sweep", "The main job: every vertex in turn as the only cone, of every mesh");
+    auto a = std::make_shared<SweepArguments>();
+    add_sweep_options(command, a.get());
+    SweepConfig& v = a->values;
     command->add_flag("--resume", v.resume, "Continue what an interrupted run finished");
     command->add_flag("--retry-failed", v.retry_failed,
                       "Continue as --resume does, or go on from a complete file, and try what failed again");
@@ -270,18 +287,20 @@ void add_sweep(CLI::App& app, CommonOptions& common, Action& action) {
                      "With --isolate: seconds without a sign of life after which a child is killed; default "
                      "600, 0: never")
         ->check(CLI::NonNegativeNumber);
+    command
+        ->add_option("--component", v.component,
+                     "Only this component of each file (numbers as in item names, from 0)")
+        ->check(CLI::NonNegativeNumber);
     command->add_flag("--dry-run", a->dry_run, "Only say what would run, with time and memory");
     command->add_option("--shard", v.shard,
-                        "i/N: only every N-th of the chosen vertices, from the i-th (i = 0 … N-1)");
-    command->add_option("--timeout", v.timeout, "Seconds per solve; 0: none")->check(CLI::NonNegativeNumber);
-    command->add_option("--max-memory", v.max_memory,
-                        "Bound on the predicted memory, like 8G; with --isolate on the memory itself");
+                        "i/N: the i-th of N equal parts of the whole work (i = 0 … N-1), to be joined by "
+                        "'ricci merge'; see 'ricci submit'");
     add_common(*command, common);
     command->footer(
         "Example: ricci sweep eight.off --vertices sample:200 --resolutions 5000,input -o eight.h5");
     command->callback([&common, &action, a, command] {
         action = [&common, a, command] {
-            SweepConfig config = merged(*command, *a);
+            SweepConfig config = resolved_config(*command, *a);
             CommonOptions resolved = common;
             if (resolved.threads == 0) resolved.threads = config.threads;
             config.threads = resolved.resolved_threads();

@@ -22,6 +22,8 @@ void add_teichmuller(CLI::App& app, CommonOptions& common, Action& action);
 void add_sweep(CLI::App& app, CommonOptions& common, Action& action);
 void add_index(CLI::App& app, CommonOptions& common, Action& action);
 void add_path(CLI::App& app, CommonOptions& common, Action& action);
+void add_merge(CLI::App& app, CommonOptions& common, Action& action);
+void add_submit(CLI::App& app, CommonOptions& common, Action& action);
 void add_verify(CLI::App& app, CommonOptions& common, Action& action);
 void add_export(CLI::App& app, CommonOptions& common, Action& action);
 

@@ -34,7 +34,7 @@ void set_up_log(const CommonOptions& options);
 void print_json(const nlohmann::json& object);
 nlohmann::json finite_or_null(double value);
 
-/// Makes SIGINT and SIGTERM set a flag (a second one ends the process at once).
+/// Makes SIGINT and SIGTERM set a flag (a second one, more than a second later, ends the process at once).
 void catch_signals();
 /// The signal caught, or 0.
 int caught_signal();

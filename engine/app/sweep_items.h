@@ -8,6 +8,7 @@
 
 #include "engine/flow/status.h"
 #include "io/store/run_store.h"
+#include "io/store/shard_table.h"
 
 namespace ricci::app {
 
@@ -32,6 +33,7 @@ struct SweepItem {
     Status status = Status::converged;
     std::string message;
     double seconds = 0.0;
+    ShardItem place{};  // in the whole run
 };
 
 /// One line of the table and of the JSON output.

@@ -37,8 +37,8 @@ std::string message_of(const std::exception& e) {
 
 }  // namespace
 
-SweepRun::SweepRun(const SweepConfig& config, std::vector<SweepSource> sources, SweepRecords& records,
-                   ProgressLine& progress)
+SweepRun::SweepRun(const SweepConfig& config, std::vector<SweepSource> sources, const SweepPlan& plan,
+                   SweepRecords& records, ProgressLine& progress)
     : config_(config),
       sources_(std::move(sources)),
       records_(&records),
@@ -46,15 +46,16 @@ SweepRun::SweepRun(const SweepConfig& config, std::vector<SweepSource> sources, 
       options_(sweep_options(config)),
       choice_(parse_vertices(config.vertices)),
       resolutions_(parse_resolutions(config.resolutions)),
-      shard_(parse_shard(config.shard)),
+      plan_(&plan),
       keep_(parse_keep(config.keep)),
       repair_(parse_repair(config.repair)) {}
 
-std::size_t SweepRun::add_item(const SweepStage& stage, bool stored) {
+std::size_t SweepRun::add_item(const SweepStage& stage, bool stored, const ShardItem& place) {
     const std::lock_guard lock(mutex_);
     items_.emplace_back();
     items_.back().name = stage.item;
     items_.back().stored = stored;
+    items_.back().place = place;
     stages_.push_back(stage);
     return items_.size() - 1;
 }
@@ -76,11 +77,15 @@ void SweepRun::record_failure(std::size_t item, Status status, const std::string
     records_->failed(failure);
 }
 
-std::vector<SweepTask> SweepRun::open(std::size_t number) {
+std::vector<SweepTask> SweepRun::open(std::size_t i) {
+    const std::size_t number = plan_->files()[i];
     const SweepSource& source = sources_[number];
     const SweepStage stage{source.name, kLoadStage};
+    ShardItem place;
+    place.base = source.name;
+    place.input = static_cast<std::int32_t>(number);
     if (const auto known = records_->begin(stage)) {
-        take_over(add_item(stage, false), *known);
+        take_over(add_item(stage, false, place), *known);
         return {};
     }
     LoadedMesh loaded;
@@ -88,7 +93,7 @@ std::vector<SweepTask> SweepRun::open(std::size_t number) {
         fault_point("load", source.name);
         loaded = load_mesh(source.file, repair_);
     } catch (const std::exception& e) {
-        record_failure(add_item(stage, false), status_of(e), message_of(e));
+        record_failure(add_item(stage, false, place), status_of(e), message_of(e));
         return {};
     }
     for (const Defect& note : loaded.report.notes) spdlog::debug("{}: {}", source.file, note.message);
@@ -99,23 +104,29 @@ std::vector<SweepTask> SweepRun::open(std::size_t number) {
     if (complaint.empty() && config_.component >= components)
         complaint = fmt::format("there is no component {}: it has {}", config_.component, components);
     if (!complaint.empty()) {
-        record_failure(add_item(stage, false), Status::invalid_input, complaint);
+        record_failure(add_item(stage, false, place), Status::invalid_input, complaint);
         return {};
     }
     records_->passed(stage);
     std::vector<SweepTask> tasks;
-    for (Index c = 0; c < components; ++c)
-        for (const Index resolution : resolutions_)
-            if (config_.component < 0 || config_.component == c)
-                if (auto task = open_surface(source, loaded, c, resolution))
-                    tasks.push_back(std::move(*task));
+    for (Index c = 0; c < components; ++c) {
+        if (config_.component >= 0 && config_.component != c) continue;
+        for (std::size_t r = 0; r < resolutions_.size(); ++r) {
+            const WorkPart* part = plan_->part(number, r);
+            if (part == nullptr) continue;
+            place.component = c;
+            place.resolution = static_cast<std::int32_t>(r);
+            if (auto task = open_surface(source, loaded, place, *part)) tasks.push_back(std::move(*task));
+        }
+    }
     return tasks;
 }
 
-std::optional<ResampledMesh> SweepRun::resampled(const SurfaceMesh& mesh, const SweepStage& stage) {
+std::optional<ResampledMesh> SweepRun::resampled(const SurfaceMesh& mesh, const SweepStage& stage,
+                                                 const ShardItem& place) {
     if (stage.resolution == 0) return ResampledMesh{mesh, mesh.input_vertex};
     if (const auto known = records_->begin(stage)) {
-        take_over(add_item(stage, false), *known);
+        take_over(add_item(stage, false, place), *known);
         return std::nullopt;
     }
     ResampledMesh result;
@@ -123,7 +134,7 @@ std::optional<ResampledMesh> SweepRun::resampled(const SurfaceMesh& mesh, const 
         fault_point("resample", stage.item);
         result = resample(mesh, stage.resolution);
     } catch (const std::exception& e) {
-        record_failure(add_item(stage, false), status_of(e), message_of(e));
+        record_failure(add_item(stage, false, place), status_of(e), message_of(e));
         return std::nullopt;
     }
     for (Index& v : result.source_vertex) v = mesh.input_vertex[static_cast<std::size_t>(v)];
@@ -132,21 +143,23 @@ std::optional<ResampledMesh> SweepRun::resampled(const SurfaceMesh& mesh, const 
 }
 
 std::optional<SweepTask> SweepRun::open_surface(const SweepSource& source, const LoadedMesh& loaded,
-                                                std::size_t component, Index resolution) {
+                                                ShardItem place, const WorkPart& part) {
+    const auto component = static_cast<std::size_t>(place.component);
+    const Index resolution = resolutions_[static_cast<std::size_t>(place.resolution)];
     const std::string stem =
         loaded.components.size() > 1 ? fmt::format("{}.c{}", loaded.stem, component) : loaded.stem;
-    SweepStage stage{item_name(stem, resolution) + source.suffix(), kResampleStage,
-                     static_cast<Index>(component), resolution};
-    auto found = resampled(loaded.components[component], stage);
+    SweepStage stage{item_name(stem, resolution) + source.suffix(), kResampleStage, place.component,
+                     resolution};
+    place.base = stage.item;
+    auto found = resampled(loaded.components[component], stage, place);
     if (!found) return std::nullopt;
     SurfaceMesh& mesh = found->mesh;
-    const Admission admission =
-        records_->admit(make_item(item_name(stem, mesh.connectivity.face_count()), source.file,
-                                  loaded.content_hash, mesh, found->source_vertex),
-                        stage);
+    place.base = item_name(stem, mesh.connectivity.face_count());
+    const Admission admission = records_->admit(
+        make_item(place.base, source.file, loaded.content_hash, mesh, found->source_vertex), stage);
     stage.item = admission.name;
     stage.stage = kSweepStage;
-    const std::size_t item = add_item(stage, true);
+    const std::size_t item = add_item(stage, true, place);
     if (const auto known = records_->begin(stage)) {
         take_over(item, *known);
         return std::nullopt;
@@ -166,13 +179,16 @@ std::optional<SweepTask> SweepRun::open_surface(const SweepSource& source, const
         return std::nullopt;
     }
     std::vector<Index> own, left;
-    for (std::size_t k = shard_.index; k < chosen.size(); k += shard_.count) own.push_back(chosen[k]);
+    for (std::size_t k = 0; k < chosen.size(); ++k)
+        if (belongs(k, part)) own.push_back(chosen[k]);
     std::set_difference(own.begin(), own.end(), admission.finished.begin(), admission.finished.end(),
                         std::back_inserter(left));
     records_->chosen(admission.name, own.size(), left.size());
     {
         const std::lock_guard lock(mutex_);
         items_[item].vertices = own.size();
+        items_[item].place.chosen = static_cast<std::int32_t>(chosen.size());
+        items_[item].place.chosen_xxh3 = digest_of_vertices(chosen);
     }
     return SweepTask{item, std::move(surface), std::move(left)};
 }
@@ -225,6 +241,29 @@ void SweepRun::progress(const SchedulerProgress& progress) {
 std::vector<SweepItem> SweepRun::items() const {
     const std::lock_guard lock(mutex_);
     return items_;
+}
+
+ShardTable SweepRun::shard_table() const {
+    const std::lock_guard lock(mutex_);
+    ShardTable table;
+    table.index = static_cast<std::int32_t>(plan_->shard().index);
+    table.count = static_cast<std::int32_t>(plan_->shard().count);
+    table.inputs = static_cast<std::int32_t>(plan_->inputs());
+    table.resolutions = static_cast<std::int32_t>(plan_->resolutions());
+    table.plan = plan_->digest();
+    SweepConfig whole = config_;
+    whole.shard.clear();
+    whole.output.clear();
+    table.config = to_toml(whole, false);
+    table.fingerprint = to_toml(whole, true);
+    table.keep = keep_;
+    for (const SweepItem& item : items_) {
+        table.items.push_back(item.place);
+        table.items.back().name = item.name;
+        if (item.status == Status::converged)
+            table.items.back().own = static_cast<std::int32_t>(item.vertices);
+    }
+    return table;
 }
 
 }  // namespace ricci::app

@@ -8,6 +8,7 @@
 #include "engine/app/console.h"
 #include "engine/app/sweep_config.h"
 #include "engine/app/sweep_items.h"
+#include "engine/app/sweep_plan.h"
 #include "engine/app/sweep_records.h"
 #include "engine/remesh/resample.h"
 #include "engine/sweep/scheduler.h"
@@ -16,13 +17,13 @@ namespace ricci::app {
 
 class SweepRun final : public SweepSink {
   public:
-    /// Throws UsageError.
-    SweepRun(const SweepConfig& config, std::vector<SweepSource> sources, SweepRecords& records,
-             ProgressLine& progress);
+    /// `plan` must outlive this. Throws UsageError.
+    SweepRun(const SweepConfig& config, std::vector<SweepSource> sources, const SweepPlan& plan,
+             SweepRecords& records, ProgressLine& progress);
 
-    /// Opens the i-th file: one task per component and resolution. Records what is wrong with it instead of
-    /// throwing; FileError of the store comes through.
-    std::vector<SweepTask> open(std::size_t source);
+    /// Opens the i-th of the plan's files: one task per component and resolution. Records what is wrong with
+    /// it instead of throwing; FileError of the store comes through.
+    std::vector<SweepTask> open(std::size_t i);
 
     void solve_started(std::size_t item, Index vertex) override;
     void block_finished(std::size_t item, std::vector<SweepSolve> solves) override;
@@ -35,15 +36,17 @@ class SweepRun final : public SweepSink {
     /// The stage of an item's solves.
     [[nodiscard]] SweepStage stage_of(std::size_t item) const;
     [[nodiscard]] bool any_failure() const { return any_failure_; }
+    /// What the result file says of itself; where the plan is of shards.
+    [[nodiscard]] ShardTable shard_table() const;
 
   private:
     std::optional<SweepTask> open_surface(const SweepSource& source, const LoadedMesh& loaded,
-                                          std::size_t component, Index resolution);
-    std::optional<ResampledMesh> resampled(const SurfaceMesh& mesh, const SweepStage& stage);
-    std::size_t add_item(const SweepStage& stage, bool stored);
+                                          ShardItem place, const WorkPart& part);
+    std::optional<ResampledMesh> resampled(const SurfaceMesh& mesh, const SweepStage& stage,
+                                           const ShardItem& place);
+    std::size_t add_item(const SweepStage& stage, bool stored, const ShardItem& place);
     void record_failure(std::size_t item, Status status, const std::string& message);
     void take_over(std::size_t item, const FailureRecord& failure);
-    std::vector<SweepTask> failed_to_open(const SweepStage& stage, const std::string& message);
 
     SweepConfig config_;
     std::vector<SweepSource> sources_;
@@ -52,7 +55,7 @@ class SweepRun final : public SweepSink {
     SweepOptions options_;
     VertexChoice choice_;
     std::vector<Index> resolutions_;
-    Shard shard_;
+    const SweepPlan* plan_;
     KeepPolicy keep_;
     RepairOptions repair_;
 

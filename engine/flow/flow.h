@@ -57,9 +57,9 @@ struct FlowResult {
     Geometry geometry = Geometry::euclidean;
     Boundary boundary = Boundary::geodesic;
     SolveOutcome outcome;
-    std::string message;        // why, where the status is not converged; notes otherwise
-    int precision_digits = 16;  // decimal digits of the lengths in which the residual was measured: 16
-                                // (double), 19 (long double) or 50
+    std::string message;              // why, where the status is not converged; notes otherwise
+    int precision_digits = 16;        // decimal digits of the lengths in which the residual was measured: 16
+                                      // (double), 19 (long double) or 50
     double gauss_bonnet_error = 0.0;  // |sum K + kappa A - 2 pi chi|
     double area = 0.0;
     std::vector<double> conformal_factor;  // V; 0 for unused vertices. By the robust route to the sphere the

@@ -23,7 +23,22 @@ std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
 }
 
-std::string explain_inadmissible(const Topology& topology, const SweepOptions& options, double cone) {
+double cone_of(const Topology& topology, const SweepOptions& options) {
+    return options.cone_curvature.value_or(2.0 * pi * topology.euler_characteristic);
+}
+
+FlowOptions flow_options(const SweepOptions& options) {
+    FlowOptions flow;
+    flow.geometry = Geometry::euclidean;
+    flow.scheme = options.scheme;
+    flow.boundary = options.boundary;
+    return flow;
+}
+
+}  // namespace
+
+std::string explain_inadmissible(const Topology& topology, const SweepOptions& options) {
+    const double cone = cone_of(topology, options);
     const bool absorbs = options.boundary == Boundary::free && topology.boundaries > 0;
     if (absorbs && options.cone_curvature)
         return cone < 2.0 * pi ? std::string() : "a cone's curvature must stay below 2 pi";
@@ -45,24 +60,14 @@ std::string explain_inadmissible(const Topology& topology, const SweepOptions& o
     return {};
 }
 
-FlowOptions flow_options(const SweepOptions& options) {
-    FlowOptions flow;
-    flow.geometry = Geometry::euclidean;
-    flow.scheme = options.scheme;
-    flow.boundary = options.boundary;
-    return flow;
-}
-
-}  // namespace
-
 std::string_view name_of(SweepSolverKind solver) {
     return solver == SweepSolverKind::lanes ? "lanes" : "newton";
 }
 
 SweepSurface::SweepSurface(SurfaceMesh mesh, const SweepOptions& options)
     : mesh_(std::move(mesh)), options_(options), topology_(topology_of(mesh_.connectivity)) {
-    cone_curvature_ = options.cone_curvature.value_or(2.0 * pi * topology_.euler_characteristic);
-    inadmissible_ = explain_inadmissible(topology_, options, cone_curvature_);
+    cone_curvature_ = cone_of(topology_, options);
+    inadmissible_ = explain_inadmissible(topology_, options);
     const std::vector<std::uint8_t> boundary = boundary_vertices(mesh_.connectivity),
                                     used = used_vertices(mesh_.connectivity);
     for (Index v = 0; v < mesh_.connectivity.vertex_count; ++v)

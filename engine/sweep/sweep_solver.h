@@ -34,6 +34,9 @@ struct SweepOptions {
     int lanes = kLanes;  // vertices at a time, 1 … kLanes; the bits do not depend on it
 };
 
+/// Why no vertex of such a surface can be the only cone, with what to do instead; empty when it can.
+std::string explain_inadmissible(const Topology& topology, const SweepOptions& options);
+
 /// The outcome for one vertex.
 struct SweepSolve {
     Index vertex = 0;

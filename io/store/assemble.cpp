@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <stdexcept>
+#include <tuple>
 
 #include "io/store/schema.h"
+#include "io/store/schema_shard.h"
 
 namespace ricci {
 namespace {
@@ -99,20 +102,21 @@ void write_sweep(hid_t group, hdf5::OutputFile& file, const std::string& name, c
 void write_item(hid_t items, hdf5::OutputFile& file, const std::string& name, const ItemState& item,
                 const KeepPolicy& keep, const StatusNames& status) {
     const Handle group = hdf5::create_group(items, name);
+    const std::string stored_at = item.group.empty() ? item_path(name) : item.group;
     {
         const Handle source = hdf5::open_input(item.file);
-        schema::write_item(group, schema::read_item(hdf5::open_group(source, item_path(name)), name));
+        schema::write_item(group, schema::read_item(hdf5::open_group(source, stored_at), name));
     }
     if (!item.rows.empty()) write_sweep(group, file, name, item, keep, status);
     if (!item.flow_file.empty()) {
         const Handle source = hdf5::open_input(item.flow_file);
-        const Handle stored = hdf5::open_group(source, item_path(name) + "/flow");
+        const Handle stored = hdf5::open_group(source, stored_at + "/flow");
         schema::write_flow(hdf5::create_group(group, "flow"),
                            schema::read_flow(stored, name, item.vertex_count, status), status);
     }
     for (const auto& [kind, path] : item.result_files) {
         const Handle source = hdf5::open_input(path);
-        const Handle stored = hdf5::open_group(source, item_path(name) + "/" + kind);
+        const Handle stored = hdf5::open_group(source, stored_at + "/" + kind);
         schema::write_result(hdf5::create_group(group, kind), schema::read_result(stored, name, kind, status),
                              status);
     }
@@ -120,14 +124,18 @@ void write_item(hid_t items, hdf5::OutputFile& file, const std::string& name, co
 }
 
 // In the order of the items, then of names: independent of who failed first.
-std::vector<FailureRecord> ordered_failures(const RunState& state, const std::vector<std::string>& items) {
-    std::vector<FailureRecord> failures;
-    for (const auto& [key, failure] : state.failures) failures.push_back(failure);
-    const auto rank = [&](const FailureRecord& failure) {
-        return std::find(items.begin(), items.end(), failure.item) - items.begin();
+std::vector<FailureRecord> ordered(std::vector<FailureRecord> failures,
+                                   const std::vector<std::string>& items) {
+    std::map<std::string, std::size_t> places;
+    for (const std::string& item : items) places.emplace(item, places.size());
+    const auto place = [&](const FailureRecord& failure) {
+        const auto found = places.find(failure.item);
+        return found == places.end() ? places.size() : found->second;
     };
-    std::stable_sort(failures.begin(), failures.end(),
-                     [&](const FailureRecord& a, const FailureRecord& b) { return rank(a) < rank(b); });
+    std::stable_sort(failures.begin(), failures.end(), [&](const FailureRecord& a, const FailureRecord& b) {
+        const std::size_t x = place(a), y = place(b);
+        return x != y ? x < y : std::tie(a.item, a.stage) < std::tie(b.item, b.stage);
+    });
     return failures;
 }
 
@@ -146,21 +154,33 @@ void require_all_items(const RunState& state, const std::vector<std::string>& it
 
 }  // namespace
 
-void write_result_file(const std::string& path, const RunInfo& info, const RunState& state,
-                       const std::vector<std::string>& items, const KeepPolicy& keep) {
-    require_all_items(state, items);
+void write_result_file(const std::string& path, const RunInfo& info, const ResultSource& source,
+                       const KeepPolicy& keep) {
     hdf5::write_file(path, [&](hdf5::OutputFile& file) {
         schema::write_run_info(file.root(), info, schema::now());
         const Handle group = hdf5::create_group(file.root(), "items");
-        for (const std::string& name : items) {
-            ItemState item = state.items.at(name);
-            recall_rows(item, name, info.status);
-            write_item(group, file, name, item, keep, info.status);
-        }
-        schema::write_failures(file.root(), ordered_failures(state, items));
+        for (const std::string& name : source.items)
+            write_item(group, file, name, source.state(name), keep, info.status);
+        schema::write_failures(file.root(), ordered(source.failures, source.items));
+        if (source.shard != nullptr) schema::write_shard(file.root(), *source.shard);
         file.flush();
         hdf5::write_attribute<std::int32_t>(file.root(), "complete", 1);
     });
+}
+
+void write_result_file(const std::string& path, const RunInfo& info, const RunState& state,
+                       const std::vector<std::string>& items, const KeepPolicy& keep,
+                       const ShardTable* shard) {
+    require_all_items(state, items);
+    std::vector<FailureRecord> failures;
+    for (const auto& [key, failure] : state.failures) failures.push_back(failure);
+    ItemState at_hand;
+    const auto state_of = [&](const std::string& name) -> const ItemState& {
+        at_hand = state.items.at(name);
+        recall_rows(at_hand, name, info.status);
+        return at_hand;
+    };
+    write_result_file(path, info, {items, state_of, std::move(failures), shard}, keep);
 }
 
 }  // namespace ricci

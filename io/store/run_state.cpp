@@ -1,7 +1,8 @@
 #include "io/store/run_state.h"
 
-#include <cmath>
 #include <fmt/format.h>
+
+#include <cmath>
 
 #include "io/store/schema.h"
 
@@ -43,23 +44,28 @@ std::string item_path(const std::string& item) {
     return "/items/" + item;
 }
 
+ItemState read_item_state(hid_t items, const std::string& name, const std::string& recorded,
+                          const StatusNames& status) {
+    const hdf5::Handle group = hdf5::open_group(items, name);
+    ItemState item;
+    if (hdf5::has_link(group, "mesh")) {
+        const ItemRecord record = schema::read_item(group, name);
+        item.vertex_count = schema::vertex_slots(record);
+        item.file = recorded;
+        item.source = {record.source, record.source_hash};
+    }
+    if (hdf5::has_link(group, "sweep")) read_sweep(group, name, recorded, status, item);
+    if (hdf5::has_link(group, "flow")) item.flow_file = recorded;
+    for (const std::string& kind : schema::result_kinds(group)) item.result_files.emplace(kind, recorded);
+    return item;
+}
+
 RunState read_contents(const std::string& path, const std::string& recorded, const StatusNames& status) {
     RunState state;
     const hdf5::Handle file = hdf5::open_input(path);
     const hdf5::Handle items = hdf5::open_group(file, "items");
-    for (const std::string& name : hdf5::link_names(items)) {
-        const hdf5::Handle group = hdf5::open_group(items, name);
-        ItemState& item = state.items[name];
-        if (hdf5::has_link(group, "mesh")) {
-            const ItemRecord record = schema::read_item(group, name);
-            item.vertex_count = schema::vertex_slots(record);
-            item.file = recorded;
-            item.source = {record.source, record.source_hash};
-        }
-        if (hdf5::has_link(group, "sweep")) read_sweep(group, name, recorded, status, item);
-        if (hdf5::has_link(group, "flow")) item.flow_file = recorded;
-        for (const std::string& kind : schema::result_kinds(group)) item.result_files.emplace(kind, recorded);
-    }
+    for (const std::string& name : hdf5::link_names(items))
+        state.items.emplace(name, read_item_state(items, name, recorded, status));
     if (hdf5::has_link(file, "failures"))
         for (FailureRecord& failure : schema::read_failures(file))
             state.failures.emplace(std::pair(failure.item, failure.stage), failure);

@@ -24,6 +24,7 @@ struct FactorSource {
 struct ItemState {
     std::string file;                                 // holds the item's mesh; empty: not stored
     ItemSource source;                                // of that mesh
+    std::string group;                                // of the item in its files; empty: by its name
     std::string flow_file;                            // holds its flow; empty: none
     std::map<std::string, std::string> result_files;  // kind of a further result: the file that holds it
     std::size_t vertex_count = 0;                     // V, once the mesh is stored
@@ -39,8 +40,12 @@ struct RunState {
     std::map<std::pair<std::string, std::string>, FailureRecord> failures;  // by item and stage
 };
 
-/// Reads what a segment or result file holds; sources get the file name `recorded`. Callers hold an
-/// hdf5::Session. Throws FileError.
+/// Reads what the group `items` of a file holds of an item; sources get the file name `recorded`. Callers
+/// hold an hdf5::Session. Throws FileError.
+ItemState read_item_state(hid_t items, const std::string& name, const std::string& recorded,
+                          const StatusNames& status);
+
+/// The same of all that a segment or result file holds.
 RunState read_contents(const std::string& path, const std::string& recorded, const StatusNames& status);
 
 /// Whether a row stands for a solve that failed: another for the same vertex replaces it.

@@ -332,14 +332,15 @@ void RunStore::retract_failure(const FailureRecord& failure) {
     impl_->state.failures.erase(key);
 }
 
-void RunStore::assemble(const std::vector<std::string>& items, const KeepPolicy& keep) {
+void RunStore::assemble(const std::vector<std::string>& items, const KeepPolicy& keep,
+                        const ShardTable* shard) {
     const std::lock_guard guard(impl_->mutex);
     if (!impl_->parts.open()) throw std::logic_error("the run is assembled already");
     std::vector<std::string> names;
     names.reserve(items.size());
     for (const std::string& item : items) names.push_back(hdf5::stored_text(item));
     impl_->parts.replace_output([&](const std::string& temporary) {
-        write_result_file(temporary, impl_->info, impl_->state, names, keep);
+        write_result_file(temporary, impl_->info, impl_->state, names, keep, shard);
     });
     for (auto& [name, item] : impl_->state.items) {
         if (!item.file.empty()) item.file = impl_->parts.output();  // for read_item

@@ -111,6 +111,8 @@ struct FailureRecord {
     std::string item, stage, status, message;
 };
 
+struct ShardTable;  // io/store/shard_table.h
+
 /// A run in progress: every method is thread-safe; a write_ method returns once its segment is durable.
 /// Throws FileError on input/output failures (disk full, ...); the journal then still tells the truth, and
 /// the store can be used further. std::invalid_argument on records whose sizes do not fit together, on a
@@ -160,8 +162,9 @@ class RunStore {
     /// every stored item once, in the order of the file (std::invalid_argument otherwise, and when a
     /// conformal factor that `keep` asks for is not among the candidates). An item without rows gets no sweep
     /// group. Factors are read one at a time. Afterwards the store answers queries but takes no writes
-    /// (std::logic_error).
-    void assemble(const std::vector<std::string>& items, const KeepPolicy& keep);
+    /// (std::logic_error). `shard`: what the file says of itself where it is one of several.
+    void assemble(const std::vector<std::string>& items, const KeepPolicy& keep,
+                  const ShardTable* shard = nullptr);
 
   private:
     struct Impl;

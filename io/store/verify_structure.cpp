@@ -15,6 +15,7 @@
 #include "io/store/run_store.h"
 #include "io/store/schema.h"
 #include "io/store/schema_index.h"
+#include "io/store/schema_shard.h"
 #include "io/store/verify_file.h"
 
 namespace ricci {
@@ -168,6 +169,7 @@ Complaints check_contents(const std::string& path, std::uint64_t bytes) {
             const hdf5::Handle items = hdf5::open_group(file, "items");
             for (const std::string& name : hdf5::link_names(items))
                 check_item(items, name, info.status, complaints);
+            schema::read_shard(file);
         }
         schema::read_failures(file);
     } catch (const FileError& error) {

@@ -303,26 +303,6 @@ TEST(Program, DryRunWritesNothing) {
     EXPECT_FALSE(std::filesystem::exists(folder / "out.h5.parts"));
 }
 
-TEST(Program, ShardsCoverEveryVertexOnce) {
-    const TemporaryFolder folder;
-    const std::string mesh = make(folder, "eight", 400);
-    std::vector<Index> seen;
-    for (const char* shard : {"0/3", "1/3", "2/3"}) {
-        ASSERT_EQ(run_ricci(folder, {"sweep", mesh, "--vertices", "sample:20", "--shard", shard, "-o",
-                                     folder / "s.h5"})
-                      .status,
-                  0);
-        const StoredRun run = read_run(folder / "s.h5");
-        for (const SweepRow& row : run.items.at(0).sweep->rows) seen.push_back(row.vertex);
-    }
-    std::sort(seen.begin(), seen.end());
-    ASSERT_EQ(run_ricci(folder, {"sweep", mesh, "--vertices", "sample:20", "-o", folder / "s.h5"}).status, 0);
-    std::vector<Index> all;
-    const StoredRun run = read_run(folder / "s.h5");
-    for (const SweepRow& row : run.items.at(0).sweep->rows) all.push_back(row.vertex);
-    EXPECT_EQ(seen, all);
-}
-
 TEST(Program, MoreDigitsAreStoredAndVerified) {
     const TemporaryFolder folder;
     const std::string mesh = folder / "sphere.off";

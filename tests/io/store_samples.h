@@ -17,6 +17,8 @@
 
 namespace ricci::store_samples {
 
+using ricci::testing::digests;
+
 /// A fresh folder, removed with the object.
 class TemporaryFolder {
   public:
@@ -187,8 +189,6 @@ inline ResultGroup sample_result(const ItemRecord& item) {
                      {"vertex", {rows}, vertices}};
     return result;
 }
-
-using ricci::testing::digests;
 
 /// Everything read_run returns but seconds and the time of creation, as text.
 std::string describe(const StoredRun& run);

@@ -2,6 +2,9 @@
 // end of the socket.
 #include <unistd.h>
 
+#include <algorithm>
+#include <mutex>
+
 #include "engine/app/isolation/child_main.h"
 #include "engine/app/isolation/sweep_messages.h"
 #include "engine/app/sweep_run.h"
@@ -11,7 +14,8 @@ namespace {
 
 class PipeRecords final : public SweepRecords {
   public:
-    PipeRecords(ParentChannel& parent, const ChildShare& share) : parent_(&parent), share_(share) {}
+    PipeRecords(ParentChannel& parent, const ChildShare& share, const KeepPolicy& keep)
+        : parent_(&parent), share_(share), keep_(keep) {}
 
     std::optional<FailureRecord> begin(const SweepStage& stage) override {
         MessageWriter message;
@@ -43,7 +47,7 @@ class PipeRecords final : public SweepRecords {
         send(SweepMessage::started, MessageWriter().put(item).put(vertex));
     }
     void finished(const SweepBlock& block) override {
-        send(SweepMessage::finished, MessageWriter().put(block));
+        send(SweepMessage::finished, MessageWriter().put(without_needless(block)));
     }
     void item_finished(const std::string& item, double seconds) override {
         send(SweepMessage::item_finished, MessageWriter().put(item).put(seconds));
@@ -56,6 +60,25 @@ class PipeRecords final : public SweepRecords {
     }
 
   private:
+    /// Conformal factors that would not be kept beside those sent before stay here.
+    SweepBlock without_needless(const SweepBlock& block) {
+        if (keep_.count < 0) return block;
+        const std::lock_guard lock(mutex_);
+        if (sent_of_ != block.item) sent_.clear();
+        sent_of_ = block.item;
+        std::vector<KeptFactor> candidates = sent_;
+        for (const KeptFactor& kept : block.kept)
+            candidates.push_back({kept.vertex, kept.area_distortion, {}});
+        drop_needless(candidates, keep_);
+        SweepBlock reduced{block.item, block.rows, {}};
+        for (const KeptFactor& kept : block.kept)
+            if (std::any_of(candidates.begin(), candidates.end(),
+                            [&](const KeptFactor& c) { return c.vertex == kept.vertex; }))
+                reduced.kept.push_back(kept);
+        sent_ = std::move(candidates);
+        return reduced;
+    }
+
     void send(SweepMessage kind, const MessageWriter& message) {
         parent_->send(static_cast<std::uint32_t>(kind), message.bytes());
     }
@@ -65,6 +88,10 @@ class PipeRecords final : public SweepRecords {
 
     ParentChannel* parent_;
     ChildShare share_;
+    KeepPolicy keep_;
+    std::mutex mutex_;
+    std::string sent_of_;
+    std::vector<KeptFactor> sent_;  // of the item, without the factors themselves
 };
 
 }  // namespace
@@ -73,9 +100,10 @@ void sweep_in_child(ParentChannel& parent, const ChildShare& share, MessageReade
     const SweepSource source{job.get_text(), job.get_text()};
     const SweepConfig config = sweep_config_from_toml(job.get_text(), "configuration");
     job.end();
-    PipeRecords records(parent, share);
+    PipeRecords records(parent, share, parse_keep(config.keep));
     ProgressLine progress(true);
-    SweepRun run(config, {source}, records, progress);
+    const SweepPlan plan(1, parse_resolutions(config.resolutions).size());
+    SweepRun run(config, {source}, plan, records, progress);
     std::vector<SweepTask> tasks = run.open(0);
     parent.send(static_cast<std::uint32_t>(SweepMessage::opened), {});
     SchedulerOptions options;
