@@ -69,7 +69,7 @@ def main():
     running.add_common_arguments(parser)
     parser.set_defaults(threads=2)
     parser.add_argument("--minutes", type=float, default=60)
-    parser.add_argument("--rounds", type=int, default=4000, help="how often the files are named")
+    parser.add_argument("--rounds", type=int, default=8000, help="how often the files are named")
     parser.add_argument("--most-growth", type=float, default=2, help="kB for each block of solves, one per item here")
     parser.add_argument("--write", action="store_true", help="the table to docs/results/soak.md")
     arguments = parser.parse_args()
