@@ -207,15 +207,21 @@ void SweepRun::solve_started(std::size_t item, Index vertex) {
 void SweepRun::block_finished(std::size_t item, std::vector<SweepSolve> solves) {
     SweepBlock block;
     block.item = stage_of(item).item;
+    std::size_t doubtful = 0;
     for (const SweepSolve& s : solves) {
         block.rows.push_back(make_row(s));
-        if (s.status == Status::converged) continue;
+        if (s.status == Status::converged) {
+            if (!s.message.empty() && doubtful++ == 0)
+                spdlog::warn("{}, vertex {}: {}", block.item, s.vertex, s.message);
+            continue;
+        }
         {
             const std::lock_guard lock(mutex_);
             any_failure_ = true;
         }
         records_->failed({block.item, vertex_stage(s.vertex), std::string(name_of(s.status)), s.message});
     }
+    if (doubtful > 1) spdlog::warn("{}: the same holds for {} vertices more", block.item, doubtful - 1);
     block.kept = candidates_of(solves, keep_);
     records_->finished(block);
 }

@@ -107,6 +107,7 @@ void flow_through_plane(const SurfaceMesh& mesh, const FlowSurface& surface, con
     sphere.tolerance = options.tolerance;
     if (options.max_iterations > 0) sphere.max_iterations = options.max_iterations;
     sphere.parallel = options.parallel;
+    sphere.precision = options.precision;
     sphere.mass = vertex_areas(mesh);
     sphere.interrupted = options.interrupted;
     sphere.progress = options.progress;
@@ -170,8 +171,7 @@ void flow_by_scaling(const SurfaceMesh& mesh, const FlowOptions& options, FlowRe
     result.precision_digits = solve.digits;
     result.message = reason(result.outcome.status, result.geometry, options);
     if (result.outcome.status == Status::converged && solve.rounding_floor > options.tolerance)
-        result.message = fmt::format("the rounding of {} digits may hide a residual of {:.2g}", solve.digits,
-                                     solve.rounding_floor);
+        result.message = rounding_note(solve.digits, solve.rounding_floor);
     store(*solve.metric, target, result);
 }
 

@@ -273,6 +273,13 @@ SolveOutcome NewtonSolver::solve(Metric& metric, const CurvatureTarget& target, 
         bool accepted = false;
         metric.save();
         for (int attempt = 0; attempt < 50; ++attempt) {
+            if (attempt > 0 && options.interrupted) {
+                if (const auto status = options.interrupted()) {
+                    if (!metric.move_to(here()) || !metric.evaluate(true))
+                        return finish(Status::internal_error);
+                    return finish(*status);
+                }
+            }
             ConformalFactor trial;
             if (low) {
                 trial_ = u;
@@ -337,6 +344,12 @@ SolveOutcome gradient_descent(Metric& metric, const CurvatureTarget& target, con
         double taken = step;
         metric.save();
         for (int halving = 0; halving < 60; ++halving, taken *= 0.5) {
+            if (halving > 0 && options.interrupted) {
+                if (const auto status = options.interrupted()) {
+                    if (!metric.move_to(u) || !metric.evaluate(false)) return finish(Status::internal_error);
+                    return finish(*status);
+                }
+            }
             step_along(u, target, direction, taken, trial);
             accepted = metric.move_to(trial) && metric.evaluate(false) &&
                        acceptable(metric, target, direction, before, taken, options.convex);

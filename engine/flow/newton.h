@@ -33,8 +33,8 @@ struct IterationLog {
 };
 
 struct SolveOptions {
-    double tolerance = 1e-10;  // on max |K - target|, radians
-    std::int32_t max_iterations = 200;
+    double tolerance = 1e-10;           // on max |K - target|, radians
+    std::int32_t max_iterations = 200;  // 0: measure only
     bool convex =
         true;  // the energy is convex: step control by its directional derivative; else by the residual
     /// Factorise at every step. Otherwise, once the residual is small, a step is solved by conjugate

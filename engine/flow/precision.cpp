@@ -1,5 +1,7 @@
 #include "engine/flow/precision.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -65,14 +67,20 @@ bool worth_more_digits(const ScalingProblem& p, const ScalingSolve& s) {
     if (p.geometry == Geometry::spherical && !(s.outcome.residual_max < 1e-6)) return false;
     const bool coarse = s.rounding_floor > p.tolerated_rounding;
     if (s.outcome.status == Status::converged) return coarse;
-    // Steps that run out far from any rounding would run out again.
-    if (s.outcome.status == Status::max_iterations)
-        return coarse && s.outcome.residual_max < std::max(1e-6, 1e3 * s.rounding_floor);
-    return true;
+    return s.outcome.status != Status::max_iterations;
+}
+
+/// What a level that gained nothing has cost, and that the caller stopped it.
+void account_for(SolveOutcome given_up, SolveOutcome& outcome) {
+    given_up.residual_max = outcome.residual_max;
+    given_up.flips = outcome.flips;
+    if (!stopped_by_caller(given_up.status)) given_up.status = outcome.status;
+    outcome = std::move(given_up);
 }
 
 void settle(const ScalingProblem& p, ScalingSolve& s) {
     s.digits = s.metric->digits();
+    if (!(s.metric->rounding_floor() > 0.0)) measure(*s.metric, *p.target, s, true);  // gradient descent
     s.rounding_floor = s.metric->rounding_floor();
     if (!p.target->scale_free) return;
     centre(*p.target, s);
@@ -84,6 +92,11 @@ void settle(const ScalingProblem& p, ScalingSolve& s) {
 
 /// One level of more digits, from where `s` stands. Keeps what was there where nothing is gained.
 void solve_level(const ScalingProblem& p, int digits, ScalingSolve& s) {
+    if (p.options.interrupted)
+        if (const auto status = p.options.interrupted()) {
+            s.outcome.status = *status;
+            return;
+        }
     ScalingSolve next;
     next.u = s.u;
     next.low = s.low.empty() ? std::vector<double>(s.u.size(), 0.0) : s.low;
@@ -98,6 +111,7 @@ void solve_level(const ScalingProblem& p, int digits, ScalingSolve& s) {
         SolveOptions options = p.options;
         options.factorize_always = true;  // the double Hessian is all that holds the convergence up
         options.patience = 8;
+        options.max_iterations = std::max(0, options.max_iterations - next.outcome.iterations);
         append(p.solve(*next.metric, *p.target, options, next.u, &next.low), next.outcome);
     }
     settle(p, next);
@@ -105,7 +119,10 @@ void solve_level(const ScalingProblem& p, int digits, ScalingSolve& s) {
     const bool better = next.outcome.status == Status::converged || s.outcome.status == Status::converged ||
                         std::max(next.outcome.residual_max, next.rounding_floor) <
                             std::max(s.outcome.residual_max, s.rounding_floor);
-    if (better) s = std::move(next);
+    if (better)
+        s = std::move(next);
+    else
+        account_for(std::move(next.outcome), s.outcome);
 }
 
 /// Drops the low part where u alone is as good.
@@ -133,6 +150,10 @@ std::string_view name_of(Precision precision) {
             break;
     }
     return "auto";
+}
+
+std::string rounding_note(int digits, double rounding_floor) {
+    return fmt::format("the rounding of {} digits may hide a residual of {:.2g}", digits, rounding_floor);
 }
 
 void solve_by_scaling(const ScalingProblem& p, Metric& first, ScalingSolve& s) {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -14,6 +15,9 @@ namespace ricci {
 /// tolerance; plain: double alone; extended: more digits from the start.
 enum class Precision : std::uint8_t { automatic, plain, extended };
 std::string_view name_of(Precision precision);  // auto, double, extended
+
+/// For people, where a solve converged but its rounding is not small.
+std::string rounding_note(int digits, double rounding_floor);
 
 /// A solve by vertex scaling, as far as it has come.
 struct ScalingSolve {

@@ -115,14 +115,21 @@ std::vector<Point> positions(const PlaneSimilarity& map, std::span<const Complex
     return result;
 }
 
-/// max |K| on the sphere; infinite where some face is no triangle of the sphere.
+/// max |K| on the sphere, infinite where some face is no triangle of the sphere, and what rounding may change
+/// it by.
+struct SphericalResidual {
+    double largest = std::numeric_limits<double>::infinity(), rounding_floor = 0.0;
+};
+
 template <class Real>
-double spherical_residual(const FlowSurface& surface, std::span<const double> u, bool parallel) {
+SphericalResidual spherical_residual(const FlowSurface& surface, std::span<const double> u, bool parallel) {
     ScaledMetric<Real> metric(surface, Geometry::spherical, parallel);
-    if (!metric.move_to(u) || !metric.evaluate(false)) return std::numeric_limits<double>::infinity();
-    double largest = 0.0;
-    for (const double k : metric.curvature()) largest = std::max(largest, std::abs(k));
-    return largest;
+    SphericalResidual result;
+    if (!metric.move_to(u) || !metric.evaluate(true)) return result;
+    result.largest = 0.0;
+    for (const double k : metric.curvature()) result.largest = std::max(result.largest, std::abs(k));
+    result.rounding_floor = metric.rounding_floor();
+    return result;
 }
 
 /// Edges from a vertex to all others. // per vertex
@@ -199,11 +206,16 @@ SphereResult solve_from(const FlowSurface& surface, const SphereOptions& options
     result.position = positions(map, z, infinity);
     result.reached_sphere = true;
     double& residual = result.outcome.residual_max;
-    residual = spherical_residual<double>(surface, result.u, options.parallel);
-    if (!(residual <= options.tolerance)) {
-        residual = spherical_residual<long double>(surface, result.u, options.parallel);
-        result.extended_precision = true;
-    }
+    SphericalResidual measured = spherical_residual<double>(surface, result.u, options.parallel);
+    const bool coarse =
+        !(measured.largest <= options.tolerance) || measured.rounding_floor > 0.1 * options.tolerance;
+    result.extended_precision =
+        options.precision == Precision::extended || (options.precision == Precision::automatic && coarse);
+    if (result.extended_precision)
+        measured = spherical_residual<long double>(surface, result.u, options.parallel);
+    residual = measured.largest;
+    if (residual <= options.tolerance && measured.rounding_floor > options.tolerance)
+        result.message = rounding_note(result.extended_precision ? 19 : 16, measured.rounding_floor);
     if (!(residual <= options.tolerance)) {
         result.outcome.status = Status::stalled;
         result.message = fmt::format(

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/flow/newton.h"
+#include "engine/flow/precision.h"
 
 namespace ricci {
 
@@ -13,6 +14,8 @@ struct SphereOptions {
     double tolerance = 1e-10;           // on max |K|, radians
     std::int32_t max_iterations = 500;  // Newton steps in the plane, per try
     bool parallel = true;
+    /// Of the measurement on the sphere. The plane is flattened in long double.
+    Precision precision = Precision::automatic;
     /// Masses of the Moebius normalisation. // V of the input, >= 0; empty: vertex areas of the surface as it
     /// starts
     std::vector<double> mass;

@@ -232,6 +232,8 @@ void SweepWorker::solve_scaling(SweepSolve& result, const SolveOptions& options)
     result.precision_digits = solve.digits;
     result.gauss_bonnet_error = gauss_bonnet_error(*solve.metric);
     result.conformal_factor = std::move(solve.u);
+    if (result.status == Status::converged && solve.rounding_floor > options.tolerance)
+        result.message = rounding_note(solve.digits, solve.rounding_floor);
     if (result.status == Status::converged && !solve.low.empty()) {
         // A sweep stores doubles: a factor that they do not hold is not handed out as one that converged.
         result.status = Status::stalled;

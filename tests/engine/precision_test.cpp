@@ -150,6 +150,58 @@ TEST(Precision, ExtendedFromTheStartReachesTheSameMetric) {
         EXPECT_NEAR(a.conformal_factor[v], b.conformal_factor[v], 1e-6);
 }
 
+TEST(Precision, StepsRunOutForAllLevelsTogether) {
+    const Hard hard;
+    FlowOptions options;
+    options.geometry = Geometry::euclidean;
+    options.target = TargetKind::values;
+    options.target_values = hard.target;
+    options.parallel = false;
+    for (const Precision precision : {Precision::automatic, Precision::extended}) {
+        options.precision = precision;
+        options.max_iterations = 0;
+        const std::int32_t needed = solve_flow(hard.mesh, options).outcome.iterations;
+        for (const std::int32_t allowed : {1, needed / 2, needed - 1, needed}) {
+            options.max_iterations = allowed;
+            const SolveOutcome outcome = solve_flow(hard.mesh, options).outcome;
+            EXPECT_LE(outcome.iterations, allowed);
+            EXPECT_EQ(outcome.status, allowed < needed ? Status::max_iterations : Status::converged)
+                << allowed << " of " << needed << ", " << name_of(precision);
+        }
+    }
+}
+
+TEST(Precision, WhoeverIsToldToStopSaysSo) {
+    // In 50 digits, from a level that gains nothing too.
+    const SurfaceMesh mesh = surface("sphere", 1000);
+    const std::vector<double> hard = random_target(mesh, TargetDraw::random, 3);
+    for (const double tolerance : {1e-10, 1e-22}) {
+        FlowOptions options;
+        options.geometry = Geometry::euclidean;
+        options.target = TargetKind::values;
+        options.target_values = hard;
+        options.tolerance = tolerance;
+        options.parallel = false;
+        int asked = 0;
+        options.interrupted = [&]() -> std::optional<Status> {
+            ++asked;
+            return std::nullopt;
+        };
+        solve_flow(mesh, options);
+        const int calls = asked;
+        ASSERT_GT(calls, 10);
+        for (int at = 1; at <= calls; at += 1 + calls / 40) {
+            asked = 0;
+            options.interrupted = [&]() -> std::optional<Status> {
+                return ++asked >= at ? std::optional(Status::cancelled) : std::nullopt;
+            };
+            EXPECT_EQ(solve_flow(mesh, options).outcome.status, Status::cancelled)
+                << "call " << at << " of " << calls << ", " << tolerance;
+            EXPECT_EQ(asked, at) << "nothing more is begun";
+        }
+    }
+}
+
 TEST(Precision, NothingChangesWhereDoubleSuffices) {
     for (const std::string name : {"torus", "eight", "pants", "punctured-torus"}) {
         const SurfaceMesh mesh = surface(name, 1200);

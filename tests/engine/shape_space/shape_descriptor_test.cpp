@@ -141,7 +141,6 @@ TEST(ShapeDescriptor, AFailedFlowIsAStatus) {
         ShapeOptions options;
         options.flow.max_iterations = 1;
         options.flow.tolerance = 1e-13;
-        options.flow.precision = Precision::plain;
         const ShapeDescriptor d = describe_shape(generated(name, 500, 0.3), options);
         EXPECT_NE(d.status, Status::converged) << name;
         EXPECT_FALSE(d.message.empty()) << name;
