@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "engine/linear/ordering_failure.h"
 #include "engine/linear/symmetric_solver.h"
 
 // OpenBLAS's own; absent where another BLAS is linked.
@@ -99,6 +100,7 @@ class CholmodSolver final : public SymmetricSolver {
             const std::lock_guard lock(metis);
             analyze_with(pattern, nullptr);
         }
+        if (take_ordering_failure()) throw std::bad_alloc();
         const auto* permutation = static_cast<const int*>(factor_->Perm);
         permutation_.assign(permutation, permutation + factor_->n);
     }
