@@ -17,7 +17,8 @@ int verify(const std::string& path, bool recompute, const CommonOptions& common)
     if (complaints.empty() && recompute)
         solutions = recompute_solutions(read_run(path), common.resolved_threads());
     bool sound = complaints.empty();
-    for (const std::string& complaint : complaints) spdlog::error("{}: {}", path, complaint);
+    for (const std::string& complaint : complaints)
+        spdlog::error("{}", complaint.starts_with(path) ? complaint : path + ": " + complaint);
     for (const RecomputedSolution& s : solutions) {
         sound = sound && s.sound;
         if (!s.sound) spdlog::error("{}: {} {}: {}", path, s.item, s.what, s.message);

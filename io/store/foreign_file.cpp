@@ -1,6 +1,7 @@
 #include "io/store/foreign_file.h"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -109,8 +110,10 @@ class FormWalk {
     }
 
     void visit(hid_t object, const std::string& name) {
+        // All of it: what is asked for here is what other readers ask for, and it opens structures (the
+        // heaps' free space) that nothing else here does.
         H5O_info_t info{};
-        check(H5Oget_info2(object, &info, H5O_INFO_BASIC), name);
+        check(H5Oget_info2(object, &info, H5O_INFO_ALL), name);
         if (!seen_.insert(info.addr).second) refuse(name, "is linked twice, which no result file does");
     }
 
@@ -193,7 +196,9 @@ class FormWalk {
         return values;
     }
 
-    static void filters(hid_t creation, const std::string& name) {
+    /// The dataset's filters, as they are applied when it is written.
+    static std::vector<H5Z_filter_t> filters(hid_t creation, const std::string& name) {
+        std::vector<H5Z_filter_t> found;
         const int count = H5Pget_nfilters(creation);
         check(count, name);
         if (count > 4) refuse(name, "has more filters than any result file");
@@ -206,7 +211,10 @@ class FormWalk {
                 filter != H5Z_FILTER_FLETCHER32)
                 refuse(name, fmt::format("filter {} is none of shuffle, gzip and fletcher32",
                                          static_cast<int>(filter)));
+            found.push_back(filter);
         }
+        if (std::count(found.begin(), found.end(), H5Z_FILTER_DEFLATE) > 1) refuse(name, "is packed twice");
+        return found;
     }
 
     /// Every value is there, within the file.
@@ -227,7 +235,7 @@ class FormWalk {
             refuse(name, "its values lie beyond the end of the file");
     }
 
-    static void chunks(hid_t dataset, hid_t creation, hid_t type, hid_t space, const std::string& name) {
+    void chunks(hid_t dataset, hid_t creation, hid_t type, hid_t space, const std::string& name) const {
         const int rank = H5Sget_simple_extent_ndims(space);
         Shape shape(static_cast<std::size_t>(rank)), chunk(shape.size());
         check(H5Sget_simple_extent_dims(space, shape.data(), nullptr), name);
@@ -242,17 +250,66 @@ class FormWalk {
         hsize_t found = 0;
         check(H5Dget_num_chunks(dataset, space, &found), name + ": cannot count the chunks");
         if (found != expected) refuse(name, fmt::format("has {} chunks of {}", found, expected));
+        const std::vector<H5Z_filter_t> pipeline = filters(creation, name);
+        const std::uint64_t plain = bytes;
+        Shape corner(shape.size(), 0);
+        for (std::uint64_t k = 0; k < expected; ++k) {
+            unpack(dataset, corner, pipeline, plain, name);
+            for (std::size_t axis = corner.size(); axis-- > 0;) {
+                corner[axis] += chunk[axis];
+                if (corner[axis] < shape[axis]) break;
+                corner[axis] = 0;
+            }
+        }
     }
 
+    /// HDF5 inflates a chunk to whatever comes out, and reads its values from that: it must be a chunk's
+    /// bytes.
+    void unpack(hid_t dataset, const Shape& corner, const std::vector<H5Z_filter_t>& pipeline,
+                std::uint64_t plain, const std::string& name) const {
+        unsigned skipped = 0;
+        haddr_t address = HADDR_UNDEF;
+        hsize_t stored = 0;
+        check(H5Dget_chunk_info_by_coord(dataset, corner.data(), &skipped, &address, &stored),
+              name + ": cannot find a chunk");
+        if (address == HADDR_UNDEF || stored > bytes_ || address > bytes_ - stored)
+            refuse(name, "a chunk lies beyond the end of the file");
+        const auto applied = [&](std::size_t k) { return (skipped >> k & 1U) == 0; };
+        std::uint64_t before = plain, after = 0;  // bytes that go into gzip, and that are added to its output
+        bool packed = false;
+        for (std::size_t k = 0; k < pipeline.size(); ++k) {
+            if (!applied(k)) continue;  // where packing gains nothing
+            packed = packed || pipeline[k] == H5Z_FILTER_DEFLATE;
+            if (pipeline[k] == H5Z_FILTER_FLETCHER32) (packed ? after : before) += kFletcher;
+        }
+        if (!packed) {
+            if (stored != before) refuse(name, "a chunk has another size than its values");
+            return;
+        }
+        if (stored < after) refuse(name, "a chunk is too short");
+        std::vector<unsigned char> bytes(stored), values(before + 1);
+        std::uint32_t mask = 0;
+        check(H5Dread_chunk(dataset, H5P_DEFAULT, corner.data(), &mask, bytes.data()),
+              name + ": cannot read a chunk");
+        uLongf unpacked = values.size();
+        const int status = uncompress(values.data(), &unpacked, bytes.data(), stored - after);
+        if (status != Z_OK || unpacked != before)
+            refuse(name, fmt::format("a chunk does not unpack to its {} bytes", before));
+    }
+
+    static constexpr std::uint64_t kFletcher = 4;
     static constexpr std::uint64_t kReference = 16;  // in the file: length, address of the heap, index
     std::uint64_t bytes_, limit_, contents_ = 0;
     std::set<haddr_t> seen_;
 };
 
 /// Runs in the child.
-std::vector<std::string> complaints_of(const std::string& path, std::uint64_t bytes) {
+std::vector<std::string> complaints_of(const std::string& path, std::uint64_t bytes, bool values) {
     try {
-        return form_complaints(open_input(path), bytes);
+        const Handle file = open_input(path);
+        std::vector<std::string> complaints = form_complaints(file, bytes);
+        if (complaints.empty() && values) complaints = checksum_complaints(file, "/");
+        return complaints;
     } catch (const FileError& error) {
         return {error.what()};
     }
@@ -274,19 +331,27 @@ std::vector<std::string> form_complaints(hid_t file, std::uint64_t file_bytes) {
     return {};
 }
 
-void require_known_form(const std::string& path) {
+namespace {
+
+void require_without_complaint(const std::string& path, bool values) {
     std::error_code error;
     const std::uintmax_t bytes = std::filesystem::file_size(path, error);
     if (error) throw system_error(path, "cannot open", error.value());
     const std::vector<std::string> complaints =
-        run_guarded(foreign_file_limits(bytes), [&] { return complaints_of(path, bytes); });
+        run_guarded(foreign_file_limits(bytes), [&] { return complaints_of(path, bytes, values); });
     if (complaints.empty()) return;
     const std::string& first = complaints.front();
     throw FileError(first.starts_with(path) ? first : path + ": " + first);
 }
 
+}  // namespace
+
+void require_known_form(const std::string& path) {
+    require_without_complaint(path, false);
+}
+
 Handle open_foreign(const std::string& path) {
-    require_known_form(path);
+    require_without_complaint(path, true);
     return open_input(path);
 }
 

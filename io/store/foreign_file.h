@@ -19,7 +19,8 @@ std::uint64_t contents_limit(std::uint64_t file_bytes);
 /// * values that lie in the file itself (no external storage, no virtual datasets), complete, in compact,
 ///   contiguous or chunked layout with no filters but shuffle, gzip and fletcher32;
 /// * storage within the file's size, and contents_limit() for all that it unpacks to, texts included.
-/// Texts and attributes are read, numbers are not. Stops at the first complaint.
+/// Texts and attributes are read and chunks unpacked, numbers are not looked at. Stops at the first
+/// complaint.
 std::vector<std::string> form_complaints(hid_t file, std::uint64_t file_bytes);
 
 /// Walks over a file by form_complaints() in a child process under limits of time and memory: what makes HDF5
@@ -27,7 +28,8 @@ std::vector<std::string> form_complaints(hid_t file, std::uint64_t file_bytes);
 /// The caller holds a Session.
 void require_known_form(const std::string& path);
 
-/// open_input() behind require_known_form(). The caller holds a Session.
+/// open_input() behind require_known_form(), which compares values with their checksums too. The caller holds
+/// a Session.
 Handle open_foreign(const std::string& path);
 
 }  // namespace ricci::hdf5

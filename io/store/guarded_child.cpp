@@ -86,10 +86,8 @@ bool drain(int pipe, std::uint64_t seconds, std::string& text) {
     }
 }
 
-std::string end_of(int status, bool in_time) {
-    if (!in_time) return "reading it takes too long";
-    if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL))
-        return "reading it takes too long";
+std::string end_of(int status) {
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) return "reading it takes too long";
     if (WIFSIGNALED(status)) return fmt::format("reading it crashes (signal {})", WTERMSIG(status));
     if (WEXITSTATUS(status) == 2) return "reading it takes too much memory";
     return WEXITSTATUS(status) == 0 ? "" : "reading it fails";
@@ -98,7 +96,7 @@ std::string end_of(int status, bool in_time) {
 }  // namespace
 
 ChildLimits foreign_file_limits(std::uint64_t file_bytes) {
-    return {60 + file_bytes / 1000000, (std::uint64_t{2} << 30U) + 16 * file_bytes};
+    return {10 + file_bytes / 1000000, (std::uint64_t{2} << 30U) + 16 * file_bytes};
 }
 
 std::vector<std::string> run_guarded(const ChildLimits& limits,
@@ -114,17 +112,20 @@ std::vector<std::string> run_guarded(const ChildLimits& limits,
     write_end.reset();
     std::string text;
     const bool in_time = drain(read_end.get(), limits.seconds, text);
-    if (!in_time) ::kill(child, SIGKILL);
+    if (!in_time) ::kill(child, SIGKILL);  // which says nothing of the file: the machine may be busy
     int status = 0;
     while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
+    if (!in_time) throw GuardUndecided("reading it takes too long by the clock");
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL)
+        throw GuardUndecided("the process that reads it was killed, most likely for want of memory");
     std::vector<std::string> complaints;
     for (std::size_t start = 0; start < text.size();) {
         const std::size_t end = std::min(text.find('\0', start), text.size());
         complaints.push_back(text.substr(start, end - start));
         start = end + 1;
     }
-    if (const std::string last = end_of(status, in_time); !last.empty()) complaints.push_back(last);
+    if (const std::string last = end_of(status); !last.empty()) complaints.push_back(last);
     return complaints;
 }
 

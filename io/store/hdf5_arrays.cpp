@@ -260,9 +260,14 @@ std::uint64_t Input::digest() const {
 std::vector<std::string> checksum_complaints(hid_t object, const std::string& name) {
     std::vector<std::string> complaints;
     try {
-        if (H5Aexists(object, "attributes_xxh3") > 0 &&
-            read_attribute<std::uint64_t>(object, "attributes_xxh3") != attribute_digest(object))
+        const std::vector<std::string> attributes = attribute_names(object);
+        const bool sealed =
+            std::find(attributes.begin(), attributes.end(), "attributes_xxh3") != attributes.end();
+        const bool to_seal = std::any_of(attributes.begin(), attributes.end(),
+                                         [](const std::string& key) { return key != "complete"; });
+        if (sealed && read_attribute<std::uint64_t>(object, "attributes_xxh3") != attribute_digest(object))
             complaints.push_back(name + ": the attributes do not match their checksum");
+        if (!sealed && to_seal) complaints.push_back(name + ": the attributes have no checksum");
         for (const std::string& link : link_names(object)) {
             const std::string child_name = fmt::format("{}/{}", name == "/" ? "" : name, link);
             const Handle child(H5Oopen(object, link.c_str(), H5P_DEFAULT), child_name + ": cannot open");

@@ -84,6 +84,7 @@ bool RunStore::Impl::resume_output() {
         const RunInfo stored = schema::read_run_info(file);
         SegmentFolder::require_same_run(output, {stored.fingerprint, stored.status.names}, header());
     }
+    parts.rely_on_output();
     merge_contents(state, read_contents(output, output, info.status));
     require_rows_of_vertices(state, output);
     return true;
@@ -179,6 +180,14 @@ std::optional<ItemSource> RunStore::source_of(const std::string& item) const {
     const ItemState* found = impl_->find_item(item);
     if (found == nullptr || found->file.empty()) return std::nullopt;
     return found->source;
+}
+
+std::vector<std::string> RunStore::items() const {
+    const std::lock_guard guard(impl_->mutex);
+    std::vector<std::string> names;
+    for (const auto& [name, item] : impl_->state.items)
+        if (!item.file.empty()) names.push_back(name);
+    return names;
 }
 
 std::vector<SweepRow> RunStore::finished_rows(const std::string& item) const {

@@ -135,6 +135,7 @@ class RunStore {
     [[nodiscard]] bool has_item(const std::string& item) const;         // its mesh is stored
     [[nodiscard]] ItemRecord read_item(const std::string& item) const;  // throws invalid_argument
     [[nodiscard]] std::optional<ItemSource> source_of(const std::string& item) const;
+    [[nodiscard]] std::vector<std::string> items() const;  // whose mesh is stored, ascending
     [[nodiscard]] std::vector<Index> finished_vertices(const std::string& item) const;  // ascending
     [[nodiscard]] std::vector<SweepRow> finished_rows(const std::string& item) const;   // ascending by vertex
     [[nodiscard]] bool has_flow(const std::string& item) const;
@@ -162,7 +163,8 @@ class RunStore {
     /// every stored item once, in the order of the file (std::invalid_argument otherwise, and when a
     /// conformal factor that `keep` asks for is not among the candidates). An item without rows gets no sweep
     /// group. Factors are read one at a time. Afterwards the store answers queries but takes no writes
-    /// (std::logic_error). `shard`: what the file says of itself where it is one of several.
+    /// (std::logic_error). Throws FileError where a segment is not what it was when it was written. `shard`:
+    /// what the file says of itself where it is one of several.
     void assemble(const std::vector<std::string>& items, const KeepPolicy& keep,
                   const ShardTable* shard = nullptr);
 

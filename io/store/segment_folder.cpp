@@ -82,14 +82,12 @@ void SegmentFolder::start(const JournalHeader& header) {
     journal_.emplace(Journal::create(folder_, header));
 }
 
-std::string SegmentFolder::damage_of(const JournalEntry& entry) const {
-    const std::string path = folder_ + "/" + entry.name;
-    if (!fs::exists(path)) return "is missing";
-    try {
-        return checksum_of_file(path) == entry.checksum ? "" : "does not match its checksum";
-    } catch (const FileError& error) {
-        return fmt::format("cannot be read ({})", error.what());
-    }
+std::string SegmentFolder::damage_of(const std::string& path, std::uint64_t checksum) {
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (status.type() == fs::file_type::not_found) return "does not exist";
+    if (error) throw system_error(path, "cannot be looked at", error.value());
+    return checksum_of_file(path) == checksum ? "" : "does not match its checksum";
 }
 
 void SegmentFolder::resume(
@@ -111,16 +109,15 @@ void SegmentFolder::resume(
         }
         if (dropped.contains(entry.name)) continue;
         const std::string path = folder_ + "/" + entry.name;
-        std::string damage = damage_of(entry);
+        // Dropped on proof alone: that a disk, a process or memory fails now is no reason to lose what is
+        // finished.
+        const std::string damage = damage_of(path, entry.checksum);
         if (damage.empty()) {
-            try {
-                const hdf5::Session session;
-                hdf5::require_known_form(path);
-                accept(path, entry);
-                continue;
-            } catch (const FileError& error) {
-                damage = fmt::format("cannot be read ({})", error.what());
-            }
+            const hdf5::Session session;
+            hdf5::require_known_form(path);
+            accept(path, entry);
+            relied_on_.emplace_back(path, entry.checksum);
+            continue;
         }
         add_note(fmt::format("{}: segment {}; {} counts as unfinished", path, damage, describe(entry)));
         journal_->append({"drop", entry.name, "", {}, 0, {}});
@@ -153,6 +150,7 @@ void SegmentFolder::write_segment(
         rename_durably(temporary, path);
         fault_point("segment_renamed");
         append(entry);
+        relied_on_.emplace_back(path, entry.checksum);
     } catch (const FileError&) {
         ::unlink(temporary.c_str());
         ::unlink(path.c_str());
@@ -167,8 +165,21 @@ void SegmentFolder::append(const JournalEntry& entry) {
     has_work_ = has_work_ || (entry.kind != "base" && entry.kind != "drop");
 }
 
+void SegmentFolder::rely_on_output() {
+    relied_on_.emplace_back(output_, checksum_of_file(output_));
+}
+
+void SegmentFolder::require_unchanged() const {
+    for (const auto& [path, checksum] : relied_on_)
+        if (const std::string damage = damage_of(path, checksum); !damage.empty())
+            throw FileError(fmt::format(
+                "{}: {}, though it did; nothing is assembled from it: --resume computes anew what it held",
+                path, damage));
+}
+
 void SegmentFolder::replace_output(const std::function<void(const std::string& temporary)>& write) const {
     const std::string temporary = folder_ + "/assembled.h5.tmp";
+    require_unchanged();
     try {
         {
             const hdf5::Session session;

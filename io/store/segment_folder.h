@@ -40,9 +40,10 @@ class SegmentFolder {
     /// Empties the folder and starts a journal. Throws FileError.
     void start(const JournalHeader& header);
     /// Opens the journal and removes files that it does not name. `accept(path, entry)` takes in a segment
-    /// whose bytes match their checksum; damaged ones, and those it throws FileError on, are dropped with a
-    /// note that describes them by `describe(entry)`. `other(entry)` gets, in order, lines that are no
-    /// segments. Throws FileError when nothing can be resumed, std::invalid_argument for another run's.
+    /// whose bytes match their checksum; those that are missing or have other bytes are dropped with a note
+    /// that describes them by `describe(entry)`. `other(entry)` gets, in order, lines that are no segments.
+    /// Throws FileError when nothing can be resumed or something cannot be read, std::invalid_argument for
+    /// another run's.
     void resume(const JournalHeader& header,
                 const std::function<void(const std::string& path, const JournalEntry& entry)>& accept,
                 const std::function<void(const JournalEntry& entry)>& other,
@@ -57,6 +58,12 @@ class SegmentFolder {
     /// Appends a line. Throws FileError, std::logic_error as above.
     void append(const JournalEntry& entry);
 
+    /// What has been accepted, written or taken over since the start is still what it was. Throws FileError
+    /// naming what is not; resuming does it again.
+    void require_unchanged() const;
+    /// The output as it is now is part of what require_unchanged() looks at.
+    void rely_on_output();
+
     /// Makes `write(temporary)` write the result file within the folder, verifies it, renames it to the
     /// output. Throws FileError.
     void replace_output(const std::function<void(const std::string& temporary)>& write) const;
@@ -68,12 +75,13 @@ class SegmentFolder {
     void add_note(std::string note) { notes_.push_back(std::move(note)); }
 
   private:
-    [[nodiscard]] std::string damage_of(const JournalEntry& entry) const;
+    [[nodiscard]] static std::string damage_of(const std::string& path, std::uint64_t checksum);
 
     std::string output_, folder_;
     std::optional<FolderLock> lock_;
     std::optional<Journal> journal_;
     std::vector<std::string> notes_;
+    std::vector<std::pair<std::string, std::uint64_t>> relied_on_;  // files by path, and their checksums
     std::uint64_t next_segment_ = 1;
     bool has_work_ = false, removed_ = false;
 };

@@ -8,6 +8,8 @@
 
 #include "io/store/run_store.h"
 #include "tests/fuzz/fuzz_targets.h"
+#include "tests/fuzz/scratch_folder.h"
+#include "tests/support/digests.h"
 #include "tests/support/test_data.h"
 
 namespace ricci::fuzz {
@@ -88,6 +90,49 @@ TEST(ResultFiles, SurviveBitFlipsAndTruncation) {
             EXPECT_NO_THROW(read_hdf5_bytes(Bytes(bytes).first(at))) << sample << ", cut at " << at;
         }
     }
+}
+
+// A bit more: what verify lets pass reads as before.
+TEST(ResultFiles, VerifyNamesEveryBitThatMatters) {
+    const std::string path = scratch_folder().file("changed.h5");
+    std::size_t named = 0, harmless = 0;
+    for (const std::string& sample : sample_result_files()) {
+        const std::vector<std::uint8_t> bytes = bytes_of(sample);
+        const auto expected = testing::digests(sample);
+        constexpr std::size_t kChanges = 40;
+        for (std::size_t i = 0; i < kChanges; ++i) {
+            std::vector<std::uint8_t> changed = bytes;
+            const std::size_t at = (bytes.size() * (2 * i + 1)) / (2 * kChanges);
+            changed[at] ^= static_cast<std::uint8_t>(1U << (i % 8));
+            std::ofstream(path, std::ios::binary)
+                .write(reinterpret_cast<const char*>(changed.data()),
+                       static_cast<std::streamsize>(changed.size()));
+            if (!verify_structure(path).empty()) {
+                ++named;
+                continue;
+            }
+            ++harmless;
+            EXPECT_EQ(testing::digests(path), expected) << sample << ", byte " << at;
+        }
+    }
+    EXPECT_GT(named, harmless);
+}
+
+// The free space of a heap (FSHD) is what only readers that ask for everything about an object look at.
+TEST(ResultFiles, DamagedFreeSpaceIsNamed) {
+    const std::string path = scratch_folder().file("changed.h5");
+    int found = 0;
+    for (const std::string& sample : sample_result_files()) {
+        const std::vector<std::uint8_t> bytes = bytes_of(sample);
+        std::string text(bytes.begin(), bytes.end());
+        const std::size_t at = text.find("FSHD");
+        if (at == std::string::npos) continue;
+        ++found;
+        text[at + 20] = static_cast<char>(text[at + 20] ^ 1);
+        std::ofstream(path, std::ios::binary) << text;
+        EXPECT_FALSE(verify_structure(path).empty()) << sample;
+    }
+    EXPECT_GT(found, 0);
 }
 
 }  // namespace

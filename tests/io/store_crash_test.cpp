@@ -201,7 +201,7 @@ TEST(StoreCrashes, DamagedSegmentIsDroppedAndRedone) {
         EXPECT_FALSE(store.has_item("a@32"));
         EXPECT_EQ(store.finished_vertices("a@32"), range(8, 16));
         ASSERT_EQ(store.notes().size(), 1U);  // of the mesh; the block was reported and dropped before
-        EXPECT_NE(store.notes()[0].find("is missing"), std::string::npos) << store.notes()[0];
+        EXPECT_NE(store.notes()[0].find("does not exist"), std::string::npos) << store.notes()[0];
     }
     write_sample_run(path, true);
     EXPECT_EQ(digests(path), digests(folder.file("reference.h5")));

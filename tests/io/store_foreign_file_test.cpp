@@ -1,5 +1,6 @@
 // HDF5 files that nobody vouches for: each form that no result file has is refused before it is read.
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <filesystem>
 #include <fstream>
@@ -141,6 +142,62 @@ TEST(ForeignFile, HasNoMoreTextThanItMay) {
     } catch (const FileError& error) {
         EXPECT_NE(std::string(error.what()).find("/x: its texts are longer than"), std::string::npos)
             << error.what();
+    }
+}
+
+/// A chunk of 64 doubles whose packed bytes are `packed`.
+void make_chunk(hid_t root, const std::string& packed, bool checksum) {
+    const hsize_t length = 64, start = 0;
+    const hdf5::Handle creation = creation_list();
+    H5Pset_chunk(creation, 1, &length);
+    H5Pset_shuffle(creation);
+    H5Pset_deflate(creation, 6);
+    if (checksum) H5Pset_fletcher32(creation);
+    const hdf5::Handle dataset = make_dataset(root, "x", length, creation);
+    ASSERT_GE(H5Dwrite_chunk(dataset, H5P_DEFAULT, 0, &start, packed.size(), packed.data()), 0);
+}
+
+std::string packed(std::size_t bytes) {
+    const std::string plain(bytes, 'x');
+    uLongf size = compressBound(bytes);
+    std::string result(size, 0);
+    compress2(reinterpret_cast<Bytef*>(result.data()), &size, reinterpret_cast<const Bytef*>(plain.data()),
+              bytes, 9);
+    result.resize(size);
+    return result;
+}
+
+TEST(ForeignFile, ChunksUnpackToTheirValues) {
+    const std::size_t right = 64 * sizeof(double);
+    EXPECT_EQ(complaint_about([&](hid_t root) { make_chunk(root, packed(right), false); }), "");
+    EXPECT_EQ(complaint_about([&](hid_t root) { make_chunk(root, packed(right) + "sums", true); }), "");
+    for (const std::size_t wrong : {std::size_t{8}, right - 1, right + 1, std::size_t{1} << 28U})
+        expect_complaint("does not unpack to its 512 bytes",
+                         [&](hid_t root) { make_chunk(root, packed(wrong), false); });
+    expect_complaint("does not unpack", [&](hid_t root) { make_chunk(root, "no gzip at all", false); });
+    expect_complaint("is too short", [&](hid_t root) { make_chunk(root, "ab", true); });
+}
+
+TEST(ForeignFile, ValuesAreWhatTheirChecksumsSay) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("run.h5");
+    store_samples::write_sample_run(path, false);
+    {
+        const hdf5::Session session;
+        const hdf5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), "test");
+        const hdf5::Handle items = hdf5::open_group(file, "items");
+        const hdf5::Handle item = hdf5::open_group(items, hdf5::link_names(items).front());
+        const hdf5::Handle points(H5Dopen2(item, "mesh/points", H5P_DEFAULT), "test");
+        std::vector<double> values(hdf5::Input(item, "mesh/points").size());
+        ASSERT_GE(H5Dread(points, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0);
+        values.at(1) += 1.0;
+        ASSERT_GE(H5Dwrite(points, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0);
+    }
+    try {
+        read_run(path);
+        ADD_FAILURE() << "changed values were read";
+    } catch (const FileError& error) {
+        EXPECT_NE(std::string(error.what()).find("mesh/points"), std::string::npos) << error.what();
     }
 }
 

@@ -339,7 +339,45 @@ TEST(StoreRunStore, FailedRowsAreReplacedAndOnlyThose) {
     EXPECT_EQ(verify_structure(path), std::vector<std::string>());
 }
 
-TEST(RunStore, RowsThatAreReleasedAreStillThere) {
+TEST(StoreRunStore, WhatIsDamagedDuringTheRunIsNotAssembled) {
+    const ItemRecord item = sample_item("a@98", 7);
+    for (const std::string kind : {"sweep", "item"}) {
+        const TemporaryFolder folder;
+        const std::string path = folder.file("run.h5");
+        std::string segment;
+        {
+            RunStore store(path, sample_info(), false);
+            store.write_item(item);
+            store.write_sweep_block(sample_block(item, {1, 2, 3}));
+            store.release(item.name);
+            for (const auto& entry : fs::directory_iterator(path + ".parts"))
+                if (entry.path().filename().string().starts_with(kind)) segment = entry.path();
+            std::fstream file(segment, std::ios::in | std::ios::out | std::ios::binary);
+            file.seekg(0, std::ios::end);
+            const auto middle = static_cast<std::streamoff>(file.tellg()) / 2;
+            file.seekg(middle);
+            const char byte = static_cast<char>(file.get() ^ 4);
+            file.seekp(middle);
+            file.put(byte);
+            file.close();
+            try {
+                store.assemble({item.name}, {true, true, -1});
+                ADD_FAILURE() << "assembled from a damaged " << kind;
+            } catch (const FileError& e) {
+                EXPECT_NE(std::string(e.what()).find(segment), std::string::npos) << e.what();
+                EXPECT_NE(std::string(e.what()).find("--resume"), std::string::npos) << e.what();
+            }
+            EXPECT_FALSE(fs::exists(path));
+        }
+        RunStore resumed(path, sample_info(), true);
+        ASSERT_FALSE(resumed.notes().empty());
+        EXPECT_NE(resumed.notes()[0].find(segment), std::string::npos) << resumed.notes()[0];
+        EXPECT_EQ(resumed.has_item(item.name), kind == "sweep");
+        EXPECT_EQ(resumed.finished_vertices(item.name).empty(), kind == "sweep");
+    }
+}
+
+TEST(StoreRunStore, RowsThatAreReleasedAreStillThere) {
     const TemporaryFolder folder;
     const ItemRecord item = sample_item("a@32", 4);
     const auto write = [&](const std::string& path, bool release) {
