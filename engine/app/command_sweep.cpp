@@ -186,7 +186,17 @@ int sweep(const SweepConfig& config, const CommonOptions& common, bool dry) {
     }
     records.forget_mended();
     const std::vector<ItemSummary> summaries = summaries_of(swept.items, &store);
-    store.assemble(stored_names(swept.items), parse_keep(config.keep), swept.shard ? &*swept.shard : nullptr);
+    const std::vector<std::string> names = stored_names(swept.items, files, store);
+    const std::size_t unread = names.size() - stored_names(swept.items).size();
+    if (unread > 0 && plan.sharded())
+        throw FileError(
+            fmt::format("{}: {} items that an earlier start of this shard stored cannot be read any more; "
+                        "nothing is assembled",
+                        config.output, unread));
+    if (unread > 0)
+        spdlog::warn("{} items are stored as an earlier start left them: their files cannot be read any more",
+                     unread);
+    store.assemble(names, parse_keep(config.keep), swept.shard ? &*swept.shard : nullptr);
     std::vector<std::string> failed_items;
     for (const FailureRecord& failure : store.failures()) failed_items.push_back(failure.item);
     remove_other_bundles(config.output, failed_items);

@@ -155,7 +155,7 @@ void IndexBuild::run_in_children(const std::vector<Reading*>& order, const Build
     IsolatedIndex work(*this, order, build.output, progress);
     run_isolated(order.size(), work,
                  {build.threads, build.max_memory, build.hang_timeout, [] { return caught_signal() != 0; }});
-    work.hand_over();
+    work.settle();
     progress.clear();
 }
 

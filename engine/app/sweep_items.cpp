@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
+#include <set>
 
 namespace ricci::app {
 
@@ -48,6 +50,27 @@ std::vector<ItemSummary> summaries_of(const std::vector<SweepItem>& items, const
         result.push_back(std::move(summary));
     }
     return result;
+}
+
+std::vector<std::string> stored_names(const std::vector<SweepItem>& items,
+                                      const std::vector<std::string>& files, const RunStore& store) {
+    std::vector<std::string> names = stored_names(items);
+    std::map<std::string, std::size_t> places;  // of files in the input, the first of equal ones
+    for (const std::string& file : files) places.emplace(stored_form(file), places.size());
+    const auto place = [&](const std::string& name) {
+        const auto source = store.source_of(name);
+        const auto found = source ? places.find(source->source) : places.end();
+        return found == places.end() ? places.size() : found->second;
+    };
+    const std::set<std::string> met(names.begin(), names.end());
+    for (const std::string& name : store.items()) {
+        if (met.contains(name)) continue;
+        const std::size_t own = place(name);
+        names.insert(std::find_if(names.begin(), names.end(),
+                                  [&](const std::string& other) { return place(other) > own; }),
+                     name);
+    }
+    return names;
 }
 
 std::vector<std::string> stored_names(const std::vector<SweepItem>& items) {

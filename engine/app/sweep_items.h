@@ -50,5 +50,9 @@ struct ItemSummary {
 std::vector<ItemSummary> summaries_of(const std::vector<SweepItem>& items, const RunStore* store);
 /// Names of the items with a mesh in the store.
 std::vector<std::string> stored_names(const std::vector<SweepItem>& items);
+/// The same with the items that an earlier start of the run stored and this one could not read again, each
+/// before the items of later files. `files`: the whole input.
+std::vector<std::string> stored_names(const std::vector<SweepItem>& items,
+                                      const std::vector<std::string>& files, const RunStore& store);
 
 }  // namespace ricci::app

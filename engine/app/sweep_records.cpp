@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <utility>
 
 namespace ricci::app {
 namespace {
@@ -35,10 +36,13 @@ std::optional<FailureRecord> StoreRecords::begin(const SweepStage& stage) {
     if (store_ == nullptr) return std::nullopt;
     const auto known = store_->failure_of(stage.item, stage.stage);
     if (!known || !costly(known->status)) return std::nullopt;
-    const std::lock_guard lock(mutex_);
-    const std::pair key(stage.item, stage.stage);
-    if (retry_ && !failed_.contains(key)) return std::nullopt;
-    failed_.insert(key);
+    {
+        const std::lock_guard lock(mutex_);
+        const std::pair key(stage.item, stage.stage);
+        if (retry_ && !failed_.contains(key)) return std::nullopt;
+        failed_.insert(key);
+    }
+    if (stage.stage == kSweepStage) store_->release(stage.item);
     return known;
 }
 
@@ -108,6 +112,12 @@ void StoreRecords::failed(const FailureRecord& failure) {
     const auto known = store_->failure_of(failure.item, failure.stage);
     if (!known || known->status != failure.status || known->message != failure.message)
         store_->write_failure(failure);
+    if (failure.stage == kSweepStage) store_->release(failure.item);
+}
+
+bool StoreRecords::was_admitted(const std::string& item) const {
+    const std::lock_guard lock(mutex_);
+    return used_.contains(item);
 }
 
 bool StoreRecords::has_failed(const std::string& item, const std::string& stage) const {
@@ -116,10 +126,13 @@ bool StoreRecords::has_failed(const std::string& item, const std::string& stage)
 }
 
 void StoreRecords::forget_mended() {
+    std::string item;  // that `rows` are of: failures of one item follow each other
+    std::vector<SweepRow> rows;
     for (const FailureRecord& failure : store_->failures()) {
         if (has_failed(failure.item, failure.stage)) continue;
+        if (store_->has_item(failure.item) && !was_admitted(failure.item)) continue;  // nobody tried again
         if (const auto vertex = vertex_of_stage(failure.stage)) {
-            const std::vector<SweepRow> rows = store_->finished_rows(failure.item);
+            if (std::exchange(item, failure.item) != failure.item) rows = store_->finished_rows(item);
             const auto row = std::lower_bound(rows.begin(), rows.end(), *vertex,
                                               [](const SweepRow& a, Index v) { return a.vertex < v; });
             const bool failing = row != rows.end() && row->vertex == *vertex &&

@@ -82,6 +82,7 @@ class StoreRecords final : public SweepRecords {
     void forget_mended();
 
   private:
+    [[nodiscard]] bool was_admitted(const std::string& item) const;
     std::string name_for(const ItemRecord& item);
 
     RunStore* store_;

@@ -200,6 +200,7 @@ class Queue {
     /// The next vertex of the seat's item, as long as the seat holds no more than its share of what is not
     /// solved yet: near the end of an item the threads keep fewer lanes each, rather than some of them none.
     std::optional<Index> next_vertex(Seat& seat) {
+        if (options_->alive) options_->alive();
         const std::optional<Index> vertex = draw(seat);
         if (vertex) sink_->solve_started(seat.item->task.item, *vertex);
         return vertex;
@@ -218,6 +219,7 @@ class Queue {
     }
 
     std::optional<Status> interruption(double seconds) const {
+        if (options_->alive) options_->alive();
         const std::lock_guard lock(mutex_);
         if (stopped()) return Status::cancelled;
         if (options_->timeout_seconds > 0.0 && seconds > options_->timeout_seconds) return Status::timeout;

@@ -25,6 +25,7 @@ struct SchedulerOptions {
     std::int64_t max_memory = 0;   // bytes for surfaces and workers; 0: no limit
     double timeout_seconds = 0.0;  // per solve, from its start, whatever else runs; 0: none
     double block_seconds = 5.0;    // a worker hands over its finished solves about this often
+    std::function<void()> alive;   // called from steps of solves alone: a sign that one goes on
     std::function<bool()> stop;    // cancelled (a signal): finish nothing more, hand over what is finished
 };
 

@@ -75,6 +75,8 @@ LoadedMesh load_mesh_bytes(const std::string& path, std::string bytes, const Rep
 /// its packed size. At most 16 GiB either way. Real meshes stay far below (bench figures in
 /// docs/reliability/hostile_input.md); a few bytes that would fill the memory do not. Thread-safe.
 void set_max_unpacked(std::uint64_t bytes);
+/// What was set; 0: the default.
+std::uint64_t max_unpacked_set();
 
 /// Writes points and triangles as OFF, OBJ or PLY (by suffix), or an intrinsic surface as .len; shortest
 /// round-trip decimals. Throws FileError.

@@ -13,6 +13,7 @@
 #include "engine/app/app.h"
 #include "engine/app/console.h"
 #include "engine/flow/status.h"
+#include "io/mesh/mesh_file.h"
 
 namespace ricci::app {
 namespace {
@@ -64,16 +65,17 @@ void limit_memory(const ChildShare& share) {
 }
 
 int be_child() {
+    catch_signals();
     ParentChannel parent;
     const std::string bytes = parent.job();
     try {
-        catch_signals();
         MessageReader job(bytes);
         JobHeader header;
         header.kind = job.get_text();
         header.share.threads = job.get<int>();
         header.share.memory = job.get<std::int64_t>();
         header.share.whole = job.get<bool>();
+        set_max_unpacked(job.get<std::uint64_t>());
         parent.set_threads(header.share.threads);
         limit_memory(header.share);
         (header.kind == "sweep" ? sweep_in_child : describe_in_child)(parent, header.share, job);
@@ -90,7 +92,11 @@ int be_child() {
 }  // namespace
 
 MessageWriter& put_header(MessageWriter& job, const JobHeader& header) {
-    return job.put(header.kind).put(header.share.threads).put(header.share.memory).put(header.share.whole);
+    return job.put(header.kind)
+        .put(header.share.threads)
+        .put(header.share.memory)
+        .put(header.share.whole)
+        .put(max_unpacked_set());
 }
 
 void allow_threads(int more) {

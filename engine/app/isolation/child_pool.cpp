@@ -7,7 +7,9 @@
 #include <chrono>
 #include <csignal>
 #include <list>
+#include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace ricci::app {
@@ -17,6 +19,8 @@ using Clock = std::chrono::steady_clock;
 
 /// After it was told to stop, and before it is killed.
 constexpr double kPatience = 5.0;
+/// A parent that has not looked for so long was stopped itself, and its children with it.
+constexpr double kSuspended = 2.0;
 /// Memory is looked at so often; also the longest wait for messages.
 constexpr int kWeighing = 50;  // milliseconds
 
@@ -51,7 +55,7 @@ class Pool {
 
     void run() {
         for (;;) {
-            if (!stopping_ && options_->stop && options_->stop()) stop();
+            stop_when_asked();
             if (!stopping_) start_some();
             if (running_.empty()) return;
             listen();
@@ -61,7 +65,8 @@ class Pool {
     }
 
   private:
-    void stop() {
+    void stop_when_asked() {
+        if (stopping_ || !options_->stop || !options_->stop()) return;
         stopping_ = true;
         stopped_at_ = Clock::now();
         for (const Running& running : running_) running.child->signal_group(SIGTERM);
@@ -126,6 +131,7 @@ class Pool {
             polled.push_back({running.child->errors(), POLLIN, 0});
         }
         ::poll(polled.data(), polled.size(), dying ? 5 : kWeighing);
+        forgive_suspension();
         for (Running& running : running_) {
             running.child->send_more();
             if (running.child->receive()) {
@@ -139,6 +145,15 @@ class Pool {
                 running.kill(KilledFor::not_ending, "it was told to stop");
         }
         if (seconds_since(weighed_) * 1000.0 >= kWeighing) weigh();
+    }
+
+    /// SIGSTOP, a suspended job: the children could not speak either.
+    void forgive_suspension() {
+        const Clock::time_point now = Clock::now();
+        const auto gap = now - std::exchange(listened_, now);
+        if (std::chrono::duration<double>(gap).count() < kSuspended) return;
+        for (Running& running : running_) running.heard = std::min(now, running.heard + gap);
+        if (stopping_) stopped_at_ = std::min(now, stopped_at_ + gap);
     }
 
     void look_after(Running& running) const {
@@ -160,7 +175,8 @@ class Pool {
     }
 
     void take_messages(Running& running) {
-        if (running.killed_for != KilledFor::nothing) return;  // nothing of it is believed any more
+        // Of one gone astray nothing is believed any more; whole frames of another are sound.
+        if (running.killed_for == KilledFor::astray) return;
         const auto reply = [&](std::string_view bytes) {
             running.child->send(static_cast<std::uint32_t>(PoolMessage::reply), bytes);
         };
@@ -198,9 +214,12 @@ class Pool {
             throw FileError(own_program() + ": cannot be started as a child process");
         end.killed_for = ended.killed_for;
         end.reason = ended.reason;
+        // A signal to all processes of a job may end a child before it reaches this one, or one child alone.
+        stop_when_asked();
+        const bool told = !stopping_ && end.told_to_end() && told_[ended.task]++ < kStartsAgain;
         end.stopped = stopping_;
         end.in_company = ended.in_company;
-        switch (work_->ended(ended.task, end, ended.share)) {
+        switch (told ? IsolatedWork::Verdict::again : work_->ended(ended.task, end, ended.share)) {
             case IsolatedWork::Verdict::finished:
                 break;
             case IsolatedWork::Verdict::again:
@@ -218,7 +237,8 @@ class Pool {
     std::list<std::size_t> waiting_, alone_;
     std::list<Running> running_;
     bool stopping_ = false;
-    Clock::time_point stopped_at_, weighed_ = Clock::now();
+    Clock::time_point stopped_at_, weighed_ = Clock::now(), listened_ = Clock::now();
+    std::map<std::size_t, int> told_;  // times that a task's child was told to end by others
 };
 
 }  // namespace

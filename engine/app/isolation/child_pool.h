@@ -27,6 +27,10 @@ struct ChildShare {
     bool whole = false;       // all of it, with no other child beside it
 };
 
+/// A child that is told to end (SIGINT, SIGTERM) while the run goes on is started again so often, before its
+/// task is blamed.
+inline constexpr int kStartsAgain = 3;
+
 /// Whose tasks they are. Calls come one at a time, from the thread of run_isolated(). std::invalid_argument
 /// and ProtocolError out of message() are the child's fault and its end; other exceptions end the run.
 class IsolatedWork {

@@ -47,6 +47,11 @@ bool ChildEnd::out_of_memory() const {
            (signal == SIGKILL && killed_for == KilledFor::nothing);
 }
 
+bool ChildEnd::told_to_end() const {
+    const auto by = [&](int number) { return signal == number || exit_status == 128 + number; };
+    return killed_for == KilledFor::nothing && (by(SIGINT) || by(SIGTERM));
+}
+
 Status ChildEnd::status() const {
     if (killed_for == KilledFor::silence) return Status::timeout;
     return out_of_memory() ? Status::out_of_memory : Status::internal_error;
@@ -116,27 +121,26 @@ void ChildProcess::send_more() {
 }
 
 bool ChildProcess::receive_from(FileDescriptor& source, bool errors) {
+    // Piece by piece, so that a child that writes fast fills no memory and keeps nobody from the others.
     std::array<char, 65536> buffer{};
-    bool any = false;
     while (source.get() >= 0) {
         const ssize_t got = ::read(source.get(), buffer.data(), buffer.size());
         if (got < 0 && errno == EINTR) continue;
-        if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) break;
+        if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return false;
         if (got <= 0) {
             source.reset();
-            break;
+            return false;
         }
-        any = true;
         const std::string_view piece(buffer.data(), static_cast<std::size_t>(got));
         if (!errors) {
             assembler_.add(piece);
-            // Handed over piece by piece, so that a fast child does not fill the parent's memory.
-            break;
+            return true;
         }
         end_.errors += piece;
         if (end_.errors.size() > 2 * kErrorsKept) end_.errors.erase(0, end_.errors.size() - kErrorsKept);
+        return true;
     }
-    return any;
+    return false;
 }
 
 bool ChildProcess::receive() {
@@ -165,7 +169,8 @@ bool ChildProcess::has_ended() {
     ended_ = true;
     if (WIFSIGNALED(status)) end_.signal = WTERMSIG(status);
     if (WIFEXITED(status)) end_.exit_status = WEXITSTATUS(status);
-    receive_from(errors_, true);
+    while (receive_from(errors_, true)) {
+    }
     if (end_.errors.size() > kErrorsKept) end_.errors.erase(0, end_.errors.size() - kErrorsKept);
     return true;
 }

@@ -34,6 +34,8 @@ struct ChildEnd {
     std::string errors;       // the end of what it wrote to stderr
 
     [[nodiscard]] bool out_of_memory() const;
+    /// It ended because somebody, not the parent for a reason of its own, sent it SIGINT or SIGTERM.
+    [[nodiscard]] bool told_to_end() const;
     /// timeout, out_of_memory or internal_error.
     [[nodiscard]] Status status() const;
     /// The same for people.

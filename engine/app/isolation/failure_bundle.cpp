@@ -10,6 +10,7 @@
 #include "engine/app/commands.h"
 #include "engine/app/records.h"
 #include "engine/app/version.h"
+#include "io/mesh/mesh_file.h"
 #include "io/store/durable.h"
 
 namespace ricci::app {
@@ -40,6 +41,8 @@ std::string one_line(std::string text) {
 std::string script(const FailureBundle& bundle) {
     std::string command;
     for (const std::string& word : bundle.arguments) command += " " + quoted(word);
+    if (const std::uint64_t bytes = max_unpacked_set(); bytes > 0)
+        command += fmt::format(" --max-unpacked={}", bytes);
     return fmt::format(
         "#!/bin/sh\n"
         "# {} ({}): {}\n"

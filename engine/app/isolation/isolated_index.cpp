@@ -4,6 +4,9 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <new>
+#include <utility>
 
 #include "engine/app/isolation/child_main.h"
 #include "engine/app/isolation/failure_bundle.h"
@@ -48,23 +51,38 @@ void IsolatedIndex::finish(Work& work) {
     progress_->show(progress_now_);
 }
 
+/// The hash of its bytes, or why it has none.
+void IsolatedIndex::look_at(Work& work) {
+    IndexBuild::Reading& reading = *work.reading;
+    std::error_code error;
+    if (std::filesystem::exists(file_of(work), error) &&
+        !std::filesystem::is_regular_file(file_of(work), error)) {
+        reading.load_error = file_of(work) + ": no regular file: --isolate reads each twice";
+        return;
+    }
+    try {
+        reading.hash = checksum_of(std::string_view(read_text(file_of(work))));
+    } catch (const FileError& e) {
+        reading.load_error = e.what();
+    } catch (const std::bad_alloc&) {
+        reading.load_error = file_of(work) + ": memory ran out";
+    }
+}
+
 std::optional<std::string> IsolatedIndex::job(std::size_t task, const ChildShare& share) {
     Work& work = tasks_[task];
     IndexBuild::Reading& reading = *work.reading;
     const IndexStore& store = *build_->store_;
     const bool first = !work.begun;
     work.begun = true;
-    try {
-        const std::string bytes = read_text(file_of(work));
-        if (first) reading.hash = checksum_of(std::string_view(bytes));
-    } catch (const FileError& e) {
-        reading.load_error = e.what();
-    }
+    if (first) look_at(work);
     reading.reused = first && reading.load_error.empty() && store.known_components(reading.hash) > 0;
-    // A file with the same bytes may be under way.
-    const bool other = first && !claimed_.insert(reading.hash).second;
-    if (reading.reused || other || !reading.load_error.empty()) {
+    if (reading.reused || !reading.load_error.empty()) {
         finish(work);
+        return std::nullopt;
+    }
+    if (first && !claimed_.emplace(reading.hash, task).second) {
+        twins_.push_back(task);
         return std::nullopt;
     }
     if (first)  // of a run that is resumed
@@ -128,7 +146,8 @@ IsolatedWork::Verdict IsolatedIndex::ended(std::size_t task, const ChildEnd& end
         spdlog::warn("{}: {}; to be tried again alone", file_of(work), end.fate());
         return Verdict::alone;
     }
-    record_death(work, end);
+    // Between two components nothing was under way. The next child begins with one that is to blame.
+    if (!work.described.contains(work.component)) record_death(work, end);
     if (static_cast<std::int32_t>(work.described.size()) < work.components) return Verdict::again;
     finish(work);
     return Verdict::finished;
@@ -155,6 +174,19 @@ void IsolatedIndex::record_death(Work& work, const ChildEnd& end) {
         spdlog::warn("{}", trouble);
     work.described.insert(shape.component);
     work.reading->shapes.push_back(std::move(shape));
+}
+
+void IsolatedIndex::settle() {
+    for (const std::size_t task : std::exchange(twins_, {})) {
+        Work& twin = tasks_[task];
+        const Work& first = tasks_[claimed_.at(twin.reading->hash)];
+        std::string error = first.reading->load_error;
+        if (const std::string& path = file_of(first); error.starts_with(path))
+            error.replace(0, path.size(), file_of(twin));
+        twin.reading->load_error = std::move(error);
+        finish(twin);
+    }
+    hand_over();
 }
 
 void IsolatedIndex::tick() {

@@ -33,8 +33,8 @@ class IsolatedIndex final : public IsolatedWork {
     Verdict ended(std::size_t task, const ChildEnd& end, const ChildShare& share) override;
     void tick() override;
 
-    /// Makes what is finished durable.
-    void hand_over();
+    /// After the last child: files with the bytes of another share its fate. Everything is durable then.
+    void settle();
 
     /// Of the shape's reproducer: stem, hash of the bytes, component.
     static std::string bundle_name(const std::string& file, std::uint64_t hash, std::int32_t component);
@@ -49,15 +49,18 @@ class IsolatedIndex final : public IsolatedWork {
     };
 
     [[nodiscard]] const std::string& file_of(const Work& work) const;
+    void look_at(Work& work);
     void finish(Work& work);
+    void hand_over();
     void record_death(Work& work, const ChildEnd& end);
 
     IndexBuild* build_;
     std::string output_;
     ProgressLine* progress_;
     std::vector<Work> tasks_;
-    std::set<std::uint64_t> claimed_;
-    std::vector<IndexBuild::Reading*> finished_;  // not handed over yet
+    std::map<std::uint64_t, std::size_t> claimed_;  // by the task that comes first
+    std::vector<std::size_t> twins_;                // tasks whose bytes another has claimed
+    std::vector<IndexBuild::Reading*> finished_;    // not handed over yet
     SchedulerProgress progress_now_;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now(), handed_over_ = start_;
 };

@@ -251,6 +251,7 @@ IsolatedWork::Verdict IsolatedSweep::ended(std::size_t task, const ChildEnd& end
         spdlog::warn("{}: {}; to be tried again alone", source.source.name, end.fate());
         return Verdict::alone;
     }
+    if (between_items(source) && source.unexplained++ == 0) return Verdict::again;
     // Whatever has been blamed before is skipped now, so it cannot be that.
     if (records_->has_failed(source.stage.item, source.stage.stage))
         source.stage = {source.source.name, kLoadStage};
@@ -261,6 +262,14 @@ IsolatedWork::Verdict IsolatedSweep::ended(std::size_t task, const ChildEnd& end
     if (!load && more) return Verdict::again;
     set_named(source);
     return Verdict::finished;
+}
+
+/// An item is over, and the next stage has not begun: nothing was under way that could be blamed.
+bool IsolatedSweep::between_items(const Source& source) {
+    return source.stage.stage == kSweepStage && source.under_way.empty() && !source.exception &&
+           std::any_of(source.items.begin(), source.items.end(), [&](const auto& entry) {
+               return entry.second.item.name == source.stage.item && entry.second.over;
+           });
 }
 
 /// The configuration of the run reduced to what was under way.

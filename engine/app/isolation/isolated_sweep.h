@@ -49,6 +49,7 @@ class IsolatedSweep final : public IsolatedWork {
         bool named = false;  // all its items have names
         std::map<Place, Entry> items;
         std::optional<SweepItem> load;  // where it gave no items
+        int unexplained = 0;            // deaths between items
         // Of the child at work:
         bool opened = false, done = false;
         std::map<std::pair<Index, Index>, int> asked;  // for a component and resolution
@@ -62,6 +63,7 @@ class IsolatedSweep final : public IsolatedWork {
     using Reply = std::function<void(std::string_view)>;
 
     Place next_place(Source& source, const SweepStage& stage);
+    static bool between_items(const Source& source);
     static Entry& entry_of(Source& source, const std::string& name);
     void begin(Source& source, const SweepStage& stage, const Reply& reply);
     void admit(Source& source, const SweepStage& stage, const ItemRecord& item, const Reply& reply);

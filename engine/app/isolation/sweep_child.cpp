@@ -110,10 +110,9 @@ void sweep_in_child(ParentChannel& parent, const ChildShare& share, MessageReade
     options.max_memory = share.memory;
     options.timeout_seconds = config.timeout;
     options.block_seconds = 0.0;  // whatever is finished is safe at once
-    options.stop = [&] {
-        parent.pulse();
-        return caught_signal() != 0;
-    };
+    // Not while a thread only waits for others, whose hang would go unnoticed.
+    options.alive = [&] { parent.pulse(); };
+    options.stop = [] { return caught_signal() != 0; };
     int allowed = share.threads;
     options.grant = [&] {
         const int granted = parent.threads();

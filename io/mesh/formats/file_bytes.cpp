@@ -149,6 +149,10 @@ std::size_t unpack_limit(std::size_t packed) {
     return std::clamp(kMaxRatio * packed, kFreeUnpacked, kMaxUnpackedBytes);
 }
 
+std::uint64_t max_unpacked_set() {
+    return max_unpacked;
+}
+
 void set_max_unpacked(std::uint64_t bytes) {
     max_unpacked = bytes;
 }
