@@ -1,4 +1,5 @@
-// Time as the benchmarks measure it: of this thread (steady on a busy machine) and on the wall.
+// Time as the benchmarks measure it: of this thread (steady on a busy machine), of the process, and on the
+// wall.
 #pragma once
 
 #include <algorithm>
@@ -17,6 +18,25 @@ inline double thread_seconds() {
 
 inline double wall_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Processor seconds of all threads of this process.
+inline double process_seconds() {
+    timespec t{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Seconds of a whole process.
+struct Cost {
+    double wall = 0.0, processor = 0.0;
+};
+
+template <class F>
+Cost cost_of(F&& f) {
+    const double wall = wall_seconds(), processor = process_seconds();
+    f();
+    return {wall_seconds() - wall, process_seconds() - processor};
 }
 
 /// Repeated measurements of one thing.

@@ -17,7 +17,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -29,6 +28,7 @@
 
 #include "bench/clocks.h"
 #include "bench/independent_newton.h"
+#include "bench/scratch_folder.h"
 #include "bench/surfaces.h"
 #include "engine/app/app.h"
 #include "engine/app/records.h"
@@ -49,28 +49,8 @@ constexpr double kTolerance = 1e-10;
 constexpr std::int64_t kSolves = 1000;
 constexpr int kPairs = 5;
 
-/// A folder of this process, gone when the program ends.
-class Folder {
-  public:
-    Folder()
-        : path_(std::filesystem::temp_directory_path() / ("ricci_bench_sweep." + std::to_string(getpid()))) {
-        std::filesystem::create_directories(path_);
-    }
-    ~Folder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-
-    [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
-
-  private:
-    std::filesystem::path path_;
-};
-
-const Folder& folder() {
-    static const Folder made;
+const bench::ScratchFolder& folder() {
+    static const bench::ScratchFolder made("ricci_bench_sweep");
     return made;
 }
 
@@ -99,23 +79,8 @@ class Silence {
     int kept_;
 };
 
-/// Processor seconds of all threads of this process.
-double processor_seconds() {
-    timespec t{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-struct Cost {
-    double wall = 0.0, processor = 0.0;  // seconds
-};
-
-template <class F>
-Cost cost_of(F&& f) {
-    const double wall = bench::wall_seconds(), processor = processor_seconds();
-    f();
-    return {bench::wall_seconds() - wall, processor_seconds() - processor};
-}
+using bench::Cost;
+using bench::cost_of;
 
 /// `ricci sweep` of one file.
 struct CommandSweep {
