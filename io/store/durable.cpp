@@ -36,7 +36,10 @@ void FileDescriptor::reset() {
 }
 
 FileDescriptor open_file(const std::string& path, int flags) {
-    FileDescriptor file(::open(path.c_str(), flags | O_CLOEXEC, 0666));
+    int opened = -1;
+    do opened = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
+    while (opened < 0 && errno == EINTR);  // network file systems
+    FileDescriptor file(opened);
     if (file.get() < 0) throw system_error(path, "cannot open", errno);
     return file;
 }
@@ -51,7 +54,8 @@ void write_all(int fd, std::string_view bytes, const std::string& path) {
 }
 
 void sync_file(int fd, const std::string& path) {
-    if (::fsync(fd) != 0) throw system_error(path, "cannot fsync", errno);
+    while (::fsync(fd) != 0)
+        if (errno != EINTR) throw system_error(path, "cannot fsync", errno);
 }
 
 void sync_path(const std::string& path) {

@@ -21,6 +21,7 @@ using ricci::testing::Environment;
 using ricci::testing::fault;
 using ricci::testing::Isolation;
 using ricci::testing::make;
+using ricci::testing::MarkedRun;
 using ricci::testing::objects;
 using ricci::testing::ProgramResult;
 using ricci::testing::read_text;
@@ -218,17 +219,34 @@ TEST_F(Isolation, ADeadParentLosesNothingAndLeavesNoChild) {
 }
 
 TEST_F(Isolation, ASignalReachesTheChildren) {
-    ASSERT_EQ(run(sweep("abc", "plain.h5")).status, 0);
-    const std::string mark = folder / "mark";
+    const Words more{"--vertices", "sample:150"};
+    ASSERT_EQ(run(sweep("abc", "plain.h5", more)).status, 0);
+    Words isolated = more;
+    isolated.emplace_back("--isolate");
     {
-        const Environment hanging = fault("solve@b" + suffix + ":1:hang");
-        const Environment marked("RICCI_TEST_MARK", mark);
-        const ProgramResult r = run_ricci(folder, sweep("abc", "out.h5", {"--isolate"}), 2500, SIGTERM);
+        MarkedRun marked(folder, sweep("abc", "out.h5", isolated));
+        ASSERT_TRUE(marked.has_processes(3));
+        marked.signal_parent(SIGTERM);
+        const ProgramResult r = marked.result();
         EXPECT_EQ(r.status, 128 + SIGTERM) << r.err;
         EXPECT_NE(r.err.find("--resume"), std::string::npos);
-        EXPECT_TRUE(all_gone(mark));
+        EXPECT_TRUE(marked.all_gone());
     }
-    EXPECT_EQ(run(sweep("abc", "out.h5", {"--resume"})).status, 0);
+    {
+        // One that does not listen is killed, and not blamed.
+        const Environment hanging = fault("solve@b" + suffix + ":1:hang");
+        Words resumed = isolated;
+        resumed.emplace_back("--resume");
+        MarkedRun marked(folder, sweep("abc", "out.h5", resumed));
+        ASSERT_TRUE(marked.has_processes(3));
+        std::this_thread::sleep_for(std::chrono::milliseconds(500));
+        marked.signal_parent(SIGTERM);
+        EXPECT_EQ(marked.result().status, 128 + SIGTERM);
+        EXPECT_TRUE(marked.all_gone());
+    }
+    Words resumed = more;
+    resumed.emplace_back("--resume");
+    EXPECT_EQ(run(sweep("abc", "out.h5", resumed)).status, 0);
     EXPECT_EQ(digests(folder / "out.h5"), digests(folder / "plain.h5"));
 }
 

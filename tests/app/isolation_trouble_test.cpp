@@ -2,9 +2,7 @@
 // for what he has not done, and what is finished stays.
 #include <zlib.h>
 
-#include <algorithm>
 #include <csignal>
-#include <future>
 
 #include "tests/support/isolated_sweeps.h"
 
@@ -18,48 +16,13 @@ using ricci::testing::Environment;
 using ricci::testing::fault;
 using ricci::testing::Isolation;
 using ricci::testing::make;
+using ricci::testing::MarkedRun;
 using ricci::testing::objects;
-using ricci::testing::processes_with;
 using ricci::testing::ProgramResult;
 using ricci::testing::read_text;
 using ricci::testing::run_ricci;
 using ricci::testing::Words;
 using ricci::testing::write_text;
-
-/// A run under way whose processes carry a mark.
-class MarkedRun {
-  public:
-    MarkedRun(const testing::TemporaryFolder& folder, Words words)
-        : mark_(folder / "mark"), environment_("RICCI_TEST_MARK", mark_) {
-        result_ = std::async(std::launch::async,
-                             [&folder, words = std::move(words)] { return run_ricci(folder, words); });
-    }
-
-    /// Waits until it has so many processes; false when it has ended before.
-    bool has_processes(std::size_t count) {
-        while (processes_with(mark_).size() < count)
-            if (result_.wait_for(std::chrono::milliseconds(2)) == std::future_status::ready) return false;
-        return true;
-    }
-    /// To all its processes, the parent first or last.
-    void signal_all(int number, bool parent_first) const {
-        std::vector<pid_t> processes = processes_with(mark_);
-        std::sort(processes.begin(), processes.end());
-        if (!parent_first) std::reverse(processes.begin(), processes.end());
-        for (const pid_t process : processes) ::kill(process, number);
-    }
-    /// To the process that began last.
-    void signal_youngest(int number) const {
-        const std::vector<pid_t> processes = processes_with(mark_);
-        if (!processes.empty()) ::kill(*std::max_element(processes.begin(), processes.end()), number);
-    }
-    ProgramResult result() { return result_.get(); }
-
-  private:
-    std::string mark_;
-    Environment environment_;
-    std::future<ProgramResult> result_;
-};
 
 TEST_F(Isolation, ASignalToAllProcessesIsNobodysFault) {
     const Words words = sweep("abcdefgh", "plain.h5", {"--vertices", "sample:60"});

@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <future>
 #include <map>
 #include <string>
 #include <thread>
@@ -61,6 +63,47 @@ inline bool all_gone(const std::string& mark) {
     }
     return false;
 }
+
+/// A run under way whose processes carry a mark.
+class MarkedRun {
+  public:
+    MarkedRun(const TemporaryFolder& folder, Words words)
+        : mark_(folder / "mark"), environment_("RICCI_TEST_MARK", mark_) {
+        result_ = std::async(std::launch::async,
+                             [&folder, words = std::move(words)] { return run_ricci(folder, words); });
+    }
+
+    /// Waits until it has so many processes; false when it has ended before.
+    bool has_processes(std::size_t count) {
+        while (processes_with(mark_).size() < count)
+            if (result_.wait_for(std::chrono::milliseconds(2)) == std::future_status::ready) return false;
+        return true;
+    }
+    /// To all its processes, the parent first or last.
+    void signal_all(int number, bool parent_first) const {
+        std::vector<pid_t> processes = processes_with(mark_);
+        std::sort(processes.begin(), processes.end());
+        if (!parent_first) std::reverse(processes.begin(), processes.end());
+        for (const pid_t process : processes) ::kill(process, number);
+    }
+    /// To its first process alone.
+    void signal_parent(int number) const {
+        const std::vector<pid_t> processes = processes_with(mark_);
+        if (!processes.empty()) ::kill(*std::min_element(processes.begin(), processes.end()), number);
+    }
+    /// To the process that began last.
+    void signal_youngest(int number) const {
+        const std::vector<pid_t> processes = processes_with(mark_);
+        if (!processes.empty()) ::kill(*std::max_element(processes.begin(), processes.end()), number);
+    }
+    ProgramResult result() { return result_.get(); }
+    [[nodiscard]] bool all_gone() const { return testing::all_gone(mark_); }
+
+  private:
+    std::string mark_;
+    Environment environment_;
+    std::future<ProgramResult> result_;
+};
 
 /// Some surfaces of genus 2 under names of their own, and how they are swept.
 class Isolation : public ::testing::Test {
