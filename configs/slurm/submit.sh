@@ -1,6 +1,6 @@
 #!/bin/bash
 # Submits the array job of a sweep and the job that joins its shards, as 'ricci submit --slurm' fills it in. To be
-# run again after a failure: what is finished stays.
+# run again after a failure: what is finished stays; with --retry-failed, all but what failed.
 set -eu
 
 folder={{folder}}
@@ -8,7 +8,7 @@ directory={{directory}}
 
 mkdir -p "$folder/logs"
 logs=${folder//%/%%}/logs
-array=$(sbatch --parsable --chdir="$directory" --output="$logs/%A_%a.log" "$folder/array.sh")
+array=$(sbatch --parsable --chdir="$directory" --output="$logs/%A_%a.log" "$folder/array.sh" "$@")
 array=${array%%;*}
 echo "array job $array"
 # After any end of the tasks: where one has failed for good, the merge says which shard is missing.

@@ -55,6 +55,7 @@ int merge(const std::vector<std::string>& arguments, const std::string& output, 
         spdlog::error("nothing is merged");
         return kUsage;
     }
+    for (const std::string& warning : merged.warnings) spdlog::warn("{}", warning);
     if (common.json) {
         print_json({{"file", output},
                     {"shards", merged.shards},
@@ -80,7 +81,11 @@ void add_merge(CLI::App& app, CommonOptions& common, Action& action) {
     command->add_option("-o,--output", *output, "The whole run's result file (HDF5)")->required();
     add_common(*command, common);
     command->footer(
-        "Nothing is written unless every shard is there, finished, sound and of the same run.\n"
+        "Nothing is written unless every shard is there, finished, sound and of the same run: the same\n"
+        "configuration, version, number of shards and contents of the inputs (docs/cluster.md says what is "
+        "noticed).\n"
+        "Shards from different kinds of processors are joined with a warning, and so are items that a shard "
+        "gave\nup on: 'ricci sweep --shard i/N ... --retry-failed' tries them again.\n"
         "Example: ricci merge shard-0.h5 shard-1.h5 -o eight.h5");
     command->callback([&common, &action, shards, output] {
         action = [&common, shards, output] { return merge(*shards, *output, common); };

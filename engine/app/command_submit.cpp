@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -39,13 +40,30 @@ SweepConfig frozen(SweepConfig config) {
     config.meshes = expand_inputs(config.meshes);
     if (config.meshes.empty())
         throw UsageError("no meshes: name them, or give a configuration with [input] meshes");
-    sweep_options(config);
-    parse_vertices(config.vertices);
-    parse_resolutions(config.resolutions);
-    parse_keep(config.keep);
+    require_shardable(config);
     config.threads = 0;
     config.shard.clear();
     return config;
+}
+
+/// A task must have time to work before it makes way.
+void require_time(const SlurmJob& job) {
+    if (job.time.empty()) return;
+    const auto limit = seconds_of_time_limit(job.time);
+    if (limit && *limit <= job.grace)
+        throw UsageError(
+            fmt::format("--time {} is {} s: not larger than --grace ({} s before its end a task "
+                        "makes way for its next start)",
+                        job.time, *limit, job.grace));
+}
+
+/// What makes mixed processors give the same bits, where it is set here.
+std::vector<std::pair<std::string, std::string>> chosen_processor() {
+    std::vector<std::pair<std::string, std::string>> environment;
+    for (const char* name : {"RICCI_INSTRUCTION_SET", "OPENBLAS_CORETYPE"})
+        if (const char* value = std::getenv(name))  // NOLINT(concurrency-mt-unsafe): nobody sets it
+            environment.emplace_back(name, value);
+    return environment;
 }
 
 /// Says what the shards would have to do.
@@ -79,11 +97,12 @@ void write_folder(const SlurmJob& job, const SweepConfig& config) {
 }
 
 /// Runs the script and returns what it printed. Throws FileError when it fails.
-std::string run_script(const std::string& script) {
+std::string run_script(const std::string& script, bool retry_failed) {
     struct ClosePipe {
         void operator()(std::FILE* pipe) const { ::pclose(pipe); }
     };
-    std::unique_ptr<std::FILE, ClosePipe> pipe(::popen(("bash " + shell_quoted(script)).c_str(), "r"));
+    const std::string command = "bash " + shell_quoted(script) + (retry_failed ? " --retry-failed" : "");
+    std::unique_ptr<std::FILE, ClosePipe> pipe(::popen(command.c_str(), "r"));
     if (!pipe) throw system_error(script, "cannot be run", errno);
     std::string text;
     char buffer[256];
@@ -106,6 +125,8 @@ int submit(SubmitArguments arguments, const SweepConfig& given, const CommonOpti
     if (!arguments.slurm) throw UsageError("name the batch system: --slurm (the only one so far)");
     const SweepConfig config = frozen(given);
     SlurmJob& job = arguments.job;
+    require_time(job);
+    job.environment = chosen_processor();
     job.program = fs::read_symlink("/proc/self/exe").string();
     job.output = fs::absolute(config.output).string();
     job.folder = job.output + ".shards";
@@ -114,7 +135,7 @@ int submit(SubmitArguments arguments, const SweepConfig& given, const CommonOpti
     report_plan(config, job.shards, common.resolved_threads());
     write_folder(job, config);
     const std::string script = job.folder + "/submit.sh";
-    const std::string printed = arguments.dry_run ? std::string() : run_script(script);
+    const std::string printed = arguments.dry_run ? std::string() : run_script(script, given.retry_failed);
     const std::string array = job_number(printed, "array job "), merge = job_number(printed, "merge job ");
     if (common.json) {
         print_json({{"folder", job.folder},
@@ -156,6 +177,8 @@ void add_submit(CLI::App& app, CommonOptions& common, Action& action) {
         ->capture_default_str()
         ->check(CLI::Range(10, 65535));
     command->add_option("--sbatch", job.options, "Further options of sbatch, like --sbatch=--partition=long");
+    command->add_flag("--retry-failed", a->sweep.values.retry_failed,
+                      "Shards that an earlier submission finished try again what failed in them");
     command->add_flag("--dry-run", a->dry_run, "Write the scripts, and submit nothing");
     add_sweep_options(command, &a->sweep);
     add_common(*command, common);

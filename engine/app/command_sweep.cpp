@@ -7,6 +7,7 @@
 #include "engine/app/commands.h"
 #include "engine/app/isolation/failure_bundle.h"
 #include "engine/app/isolation/isolated_sweep.h"
+#include "engine/app/processor_kind.h"
 #include "engine/app/records.h"
 #include "engine/app/sweep_arguments.h"
 #include "engine/app/sweep_run.h"
@@ -119,8 +120,7 @@ struct Swept {
 SweepPlan make_plan(const SweepConfig& config, const std::vector<std::string>& files,
                     const CommonOptions& common) {
     if (config.shard.empty()) return {files.size(), parse_resolutions(config.resolutions).size()};
-    if (config.isolate) throw UsageError("--shard does not go with --isolate");
-    if (config.component >= 0) throw UsageError("--shard does not go with --component");
+    require_shardable(config);
     SweepPlan plan(config, files, common.resolved_threads());
     spdlog::info("{}", plan.summary());
     return plan;
@@ -169,8 +169,9 @@ int sweep(const SweepConfig& config, const CommonOptions& common, bool dry) {
     // A shard cannot be resumed after its inputs have changed so that it would do something else.
     const std::string fingerprint =
         to_toml(config, true) + (plan.sharded() ? "# plan " + plan.digest() + "\n" : "");
-    RunStore store(config.output, make_run_info(to_toml(config, false), fingerprint, config.threads),
-                   config.resume || config.retry_failed);
+    RunInfo info = make_run_info(to_toml(config, false), fingerprint, config.threads);
+    info.processor = processor_kind();
+    RunStore store(config.output, info, config.resume || config.retry_failed);
     for (const std::string& note : store.notes()) spdlog::warn("{}", note);
     catch_signals();
     ProgressLine progress(common.quiet);

@@ -1,7 +1,10 @@
 // The scripts of a sweep on a Slurm cluster: an array job of one task per shard, and the job that joins them.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace ricci::app {
@@ -16,7 +19,14 @@ struct SlurmJob {
     int grace = 120;                   // seconds before the time limit
     std::string time, memory;          // as sbatch takes them; empty: the cluster's defaults
     std::vector<std::string> options;  // further options of sbatch, like "--partition=long"
+    std::vector<std::pair<std::string, std::string>>
+        environment;  // of the tasks, beyond what sbatch hands on
 };
+
+/// Seconds of a time limit as sbatch takes it: minutes, minutes:seconds, hours:minutes:seconds, days-hours,
+/// days-hours:minutes, days-hours:minutes:seconds; rounded up to minutes, as Slurm does. Nothing for none: 0,
+/// infinite, unlimited. Throws UsageError.
+std::optional<std::int64_t> seconds_of_time_limit(const std::string& text);
 
 /// One task of the array: runs its shard, goes on where an earlier start of it was stopped, and starts again
 /// where the time limit is near.
@@ -25,7 +35,8 @@ std::string array_script(const SlurmJob& job);
 /// Joins the shards.
 std::string merge_script(const SlurmJob& job);
 
-/// Submits both; a plain script, so that it can be run again. Prints "array job ID" and "merge job ID".
+/// Submits both; a plain script, so that it can be run again, with --retry-failed too. Prints "array job ID"
+/// and "merge job ID".
 std::string submit_script(const SlurmJob& job);
 
 /// A word for the shell.

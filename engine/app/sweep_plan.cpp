@@ -4,21 +4,27 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <filesystem>
 #include <iterator>
+#include <new>
 #include <numeric>
+#include <optional>
 #include <utility>
 
+#include "engine/app/console.h"
 #include "engine/app/solve_options.h"
 #include "engine/sweep/sweep_solver.h"
 #include "io/mesh/mesh_file.h"
 #include "io/store/durable.h"
+#include "io/store/fault_point.h"
+#include "io/store/shard_table.h"
 #include "kernels/parallel.h"
 
 namespace ricci::app {
 namespace {
 
-// Seconds of one thread on surfaces of V vertices, measured once (docs/reliability/slurm.md). Only their
+// Seconds of one thread on surfaces of V vertices, measured once (docs/results/shard_balance.md). Only their
 // ratios matter, and no host may measure its own: all shards must find the same numbers. No function of the
 // mathematical library either, whose last digit depends on the processor.
 constexpr double kLoadFile = 5e-3, kLoadVertex = 2e-6;
@@ -29,6 +35,9 @@ constexpr double kNewtonSolve = 6e-3, kNewtonSolveVertex = 6e-6;
 
 // Files are loaded for the plan up to this part of a shard's time, or for so many seconds anyway.
 constexpr double kLoadShare = 0.02, kLoadSeconds = 5.0;
+// And no more vertices at a time than these: about 500 bytes each while a file is loaded. A single larger
+// file counts by its size, on every host, however much memory that has.
+constexpr double kLoadedAtATime = 2e6;
 
 /// What a plan knows of a component.
 struct Surface {
@@ -65,10 +74,12 @@ Input by_size(const std::string& file) {
     return input;
 }
 
-std::vector<Surface> by_loading(const std::string& file, const RepairOptions& repair,
-                                const SweepOptions& options) {
+/// Nothing where loading fails in a way that says nothing of the file: it counts by its size then.
+std::optional<std::vector<Surface>> by_loading(const std::string& file, const RepairOptions& repair,
+                                               const SweepOptions& options) {
     std::vector<Surface> surfaces;
     try {
+        fault_point("plan", file);
         const LoadedMesh loaded = load_mesh(file, repair);
         for (const SurfaceMesh& mesh : loaded.components) {
             const Topology topology = topology_of(mesh.connectivity);
@@ -80,6 +91,11 @@ std::vector<Surface> by_loading(const std::string& file, const RepairOptions& re
         }
     } catch (const FileError&) {
         surfaces.clear();  // the sweep says so, and has nothing else to do
+    } catch (const std::bad_alloc&) {
+        // Other hosts may have had the memory, and another plan.
+        throw FileError(file + ": memory ran out while it was loaded to divide the work");
+    } catch (const std::exception&) {
+        return std::nullopt;
     }
     return surfaces;
 }
@@ -90,6 +106,7 @@ class CostModel {
         : choice_(parse_vertices(config.vertices)), options_(sweep_options(config)) {}
 
     [[nodiscard]] const SweepOptions& options() const { return options_; }
+    [[nodiscard]] const VertexChoice& choice() const { return choice_; }
 
     [[nodiscard]] static double loading(double vertices) { return kLoadFile + kLoadVertex * vertices; }
 
@@ -147,8 +164,9 @@ std::vector<std::size_t> worth_loading(const std::vector<Input>& inputs, const s
     double total = 0.0;
     for (const WorkUnit& unit : units) total += unit.divisible + unit.fixed;
     const double budget = std::max(kLoadSeconds, kLoadShare * total / static_cast<double>(shards));
-    std::vector<std::size_t> order(inputs.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < inputs.size(); ++i)
+        if (inputs[i].vertices <= kLoadedAtATime) order.push_back(i);
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return inputs[a].vertices > inputs[b].vertices; });
     double spent = 0.0;
@@ -160,8 +178,14 @@ std::vector<std::size_t> worth_loading(const std::vector<Input>& inputs, const s
 }
 
 std::string digest_of(const std::vector<std::string>& files, const std::vector<Input>& inputs,
-                      const WorkDivision& division) {
+                      VertexChoice choice, const WorkDivision& division) {
     std::string text;
+    if (choice.kind == VertexChoice::Kind::list) {
+        // The configuration names the file alone.
+        std::sort(choice.list.begin(), choice.list.end());
+        choice.list.erase(std::unique(choice.list.begin(), choice.list.end()), choice.list.end());
+        text += hex16(digest_of_vertices(choice.list)) + "\n";
+    }
     for (std::size_t i = 0; i < files.size(); ++i)
         text += fmt::format("{}:{} {}\n", files[i].size(), files[i], inputs[i].bytes);
     for (const auto& parts : division.parts) {
@@ -172,6 +196,19 @@ std::string digest_of(const std::vector<std::string>& files, const std::vector<I
 }
 
 }  // namespace
+
+void require_shardable(const SweepConfig& config) {
+    if (config.isolate)
+        throw UsageError("a sweep in shards does not go with --isolate ([run] isolate = true)");
+    if (config.component >= 0)
+        throw UsageError("a sweep in shards does not go with --component ([input] component)");
+    sweep_options(config);
+    parse_repair(config.repair);
+    parse_vertices(config.vertices);
+    parse_resolutions(config.resolutions);
+    parse_keep(config.keep);
+    if (!config.max_memory.empty()) parse_bytes(config.max_memory);
+}
 
 SweepPlan::SweepPlan(std::size_t files, std::size_t resolutions) : inputs_(files), resolutions_(resolutions) {
     std::vector<WorkPart> parts;
@@ -189,14 +226,21 @@ SweepPlan::SweepPlan(const SweepConfig& config, const std::vector<std::string>& 
     std::transform(files.begin(), files.end(), std::back_inserter(inputs), by_size);
     const std::vector<std::size_t> load =
         worth_loading(inputs, units_of(inputs, resolutions, model), shard_.count);
-    std::atomic<std::size_t> next{0};
-    run_workers(threads, [&](int) {
-        for (std::size_t k = next++; k < load.size(); k = next++)
-            inputs[load[k]].surfaces = by_loading(files[load[k]], repair, model.options());
+    // The first is the largest.
+    const double largest = load.empty() ? 1.0 : std::max(inputs[load.front()].vertices, 1.0);
+    const int workers = static_cast<int>(std::min(static_cast<double>(threads), kLoadedAtATime / largest));
+    std::atomic<std::size_t> next{0}, loaded{0};
+    run_workers(workers, [&](int) {
+        for (std::size_t k = next++; k < load.size(); k = next++) {
+            auto surfaces = by_loading(files[load[k]], repair, model.options());
+            if (!surfaces) continue;
+            inputs[load[k]].surfaces = std::move(*surfaces);
+            ++loaded;
+        }
     });
-    loaded_ = load.size();
+    loaded_ = loaded;
     WorkDivision division = divide_work(units_of(inputs, resolutions, model), shard_.count);
-    digest_ = digest_of(files, inputs, division);
+    digest_ = digest_of(files, inputs, model.choice(), division);
     imbalance_ = division.imbalance();
     overhead_ = division.overhead();
     const double total = std::accumulate(division.load.begin(), division.load.end(), 0.0);

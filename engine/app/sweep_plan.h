@@ -9,14 +9,19 @@
 
 namespace ricci::app {
 
+/// What every shard demands of its configuration: that it can be divided, and all that a run would refuse.
+/// Throws UsageError.
+void require_shardable(const SweepConfig& config);
+
 /// What one shard of a sweep does. A unit of work is one input file at one resolution.
 class SweepPlan {
   public:
     /// All of it, on this machine alone.
     SweepPlan(std::size_t files, std::size_t resolutions);
     /// The shard that the configuration names. Small files count by their size on disk; the largest are
-    /// loaded, `threads` at a time, as many as take a small part of a shard's time: their components, their
-    /// topology and so their true work are known then. Throws UsageError.
+    /// loaded, at most `threads` at a time and within a fixed amount of memory, as many as take a small part
+    /// of a shard's time: their components, their topology and so their true work are known then. Throws
+    /// UsageError; FileError where memory runs out, for the plan would not be that of the other shards.
     SweepPlan(const SweepConfig& config, const std::vector<std::string>& files, int threads);
 
     /// The files that this machine opens, ascending.
@@ -28,7 +33,8 @@ class SweepPlan {
     [[nodiscard]] Shard shard() const { return shard_; }
     [[nodiscard]] std::size_t inputs() const { return inputs_; }
     [[nodiscard]] std::size_t resolutions() const { return resolutions_; }
-    /// 16 hexadecimal digits: equal for the same division of the same inputs.
+    /// 16 hexadecimal digits: equal for the same division of inputs of the same paths and sizes, and the same
+    /// list of vertices.
     [[nodiscard]] const std::string& digest() const { return digest_; }
     /// Shards that have nothing to do.
     [[nodiscard]] std::size_t idle() const { return idle_; }

@@ -266,6 +266,7 @@ ShardTable SweepRun::shard_table() const {
     for (const SweepItem& item : items_) {
         table.items.push_back(item.place);
         table.items.back().name = item.name;
+        table.items.back().stored = item.stored ? 1 : 0;
         if (item.status == Status::converged)
             table.items.back().own = static_cast<std::int32_t>(item.vertices);
     }

@@ -92,7 +92,7 @@ json object_of(const JournalEntry& entry) {
         return object;
     }
     object["name"] = entry.name;
-    if (entry.kind == "base" || entry.kind == "drop") return object;
+    if (!entry.result()) return object;
     object["item"] = entry.item;
     object["checksum"] = hex16(entry.checksum);
     if (entry.kind == "sweep") object["vertices"] = json_of(entry.vertices);
@@ -108,8 +108,12 @@ JournalEntry entry_of(const json& object) {
                          object.at("status").get<std::string>(), object.at("message").get<std::string>()};
         return entry;
     }
+    if (entry.kind == "processor") {
+        entry.name = object.at("name").get<std::string>();
+        return entry;
+    }
     entry.name = file_name(object.at("name"));
-    if (entry.kind == "base" || entry.kind == "drop") return entry;
+    if (!entry.result()) return entry;
     entry.item = object.at("item").get<std::string>();
     entry.checksum = checksum_from(object.at("checksum"));
     if (entry.kind == "sweep") entry.vertices = runs_of(object.at("vertices"));
@@ -122,6 +126,7 @@ void read_header(const std::string& path, const std::optional<json>& object, Jou
                         ": the first line is damaged, so nothing can be resumed; run without --resume");
     header.fingerprint = object->at("fingerprint").get<std::string>();
     header.status_names = object->at("status_names").get<std::vector<std::string>>();
+    header.processor = object->value("processor", "");
 }
 
 }  // namespace
@@ -175,8 +180,9 @@ Journal::Journal(std::string path, std::uint64_t end)
     : path_(std::move(path)), file_(open_file(path_, O_WRONLY | O_APPEND)), end_(end) {}
 
 Journal Journal::create(const std::string& folder, const JournalHeader& header) {
-    const std::string line = sealed_line(
-        {{"kind", "run"}, {"fingerprint", header.fingerprint}, {"status_names", header.status_names}});
+    json object{{"kind", "run"}, {"fingerprint", header.fingerprint}, {"status_names", header.status_names}};
+    if (!header.processor.empty()) object["processor"] = header.processor;
+    const std::string line = sealed_line(object);
     write_text_durably(journal_path(folder), line);
     return {journal_path(folder), line.size()};
 }

@@ -17,6 +17,7 @@ namespace ricci {
 struct JournalHeader {
     std::string fingerprint;
     std::vector<std::string> status_names;
+    std::string processor{};  // RunInfo's of the first start; "": not recorded
 };
 
 /// Vertices first, first + 1, ... first + count - 1.
@@ -28,17 +29,17 @@ std::vector<VertexRun> runs_of(const std::vector<Index>& vertices);
 
 /// One fact. `kind` is "failure" (kept in the line itself), "retract" (drops the failure of the same item and
 /// stage), "drop" (the segment `name` turned out damaged), "base" (the complete result file is itself a
-/// segment) or what a segment holds: "item", "sweep", "flow" or the kind of a further result (name, item,
-/// checksum and, for "sweep", vertices).
+/// segment), "processor" (a later start ran on another kind, `name`) or what a segment holds: "item",
+/// "sweep", "flow" or the kind of a further result (name, item, checksum and, for "sweep", vertices).
 struct JournalEntry {
     std::string kind, name, item;
     std::vector<VertexRun> vertices;  // ascending; stored as [first, count]
     std::uint64_t checksum = 0;       // XXH3-64 of the segment file
     FailureRecord failure;
 
-    [[nodiscard]] bool segment() const {
-        return kind != "failure" && kind != "retract" && kind != "drop" && kind != "base";
-    }
+    [[nodiscard]] bool segment() const { return kind != "failure" && kind != "retract" && result(); }
+    /// Says something that the output may lack.
+    [[nodiscard]] bool result() const { return kind != "drop" && kind != "base" && kind != "processor"; }
 };
 
 /// What a journal says.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -22,8 +23,17 @@ struct Piece {
     const Shard* shard = nullptr;
     const ShardItem* item = nullptr;
 
-    [[nodiscard]] bool stored() const { return shard->stored.contains(item->name); }
+    [[nodiscard]] bool stored() const { return item->stored != 0; }
+    /// Its vertices were chosen: the shard did not fail before.
+    [[nodiscard]] bool chosen() const { return item->chosen >= 0; }
 };
+
+/// "0/3, 2/3".
+std::string shards_of(const std::vector<Piece>& pieces) {
+    std::string names;
+    for (const Piece& piece : pieces) names += (names.empty() ? "" : ", ") + piece.shard->name();
+    return names;
+}
 
 /// Input, component, resolution: the order of the items of a whole run.
 using Place = std::array<std::int32_t, 3>;
@@ -33,8 +43,17 @@ struct WholeItem {
     std::string name;
     std::vector<Piece> pieces;  // ascending by shard
 
-    [[nodiscard]] bool stored() const {
-        return std::any_of(pieces.begin(), pieces.end(), [](const Piece& p) { return p.stored(); });
+    [[nodiscard]] bool stored() const { return first_stored() != nullptr; }
+    /// Null: none.
+    [[nodiscard]] const Piece* first_stored() const {
+        const auto found =
+            std::find_if(pieces.begin(), pieces.end(), [](const Piece& p) { return p.stored(); });
+        return found == pieces.end() ? nullptr : &*found;
+    }
+    [[nodiscard]] const Piece* first_chosen() const {
+        const auto found =
+            std::find_if(pieces.begin(), pieces.end(), [](const Piece& p) { return p.chosen(); });
+        return found == pieces.end() ? nullptr : &*found;
     }
     /// Some shard gave up on it, and says so among its failures.
     [[nodiscard]] bool given_up() const {
@@ -47,45 +66,70 @@ std::map<Place, WholeItem> whole_items(const std::vector<Shard>& shards) {
     for (const Shard& shard : shards)
         for (const ShardItem& item : shard.table.items)
             items[{item.input, item.component, item.resolution}].pieces.push_back({&shard, &item});
+    // What failed before it was stored takes no item's name.
     std::map<std::string, int> uses;
     for (auto& [place, item] : items) {
-        const std::string& base = item.pieces.front().item->base;
-        const int use = ++uses[base];
-        item.name = use == 1 ? base : fmt::format("{}~{}", base, use);
+        const Piece* stored = item.first_stored();
+        item.name = stored != nullptr ? stored->item->base : item.pieces.front().item->name;
+        if (stored == nullptr) continue;
+        if (const int use = ++uses[item.name]; use > 1) item.name += fmt::format("~{}", use);
     }
     return items;
 }
 
+/// All shards read the same bytes of an input, as far as anything of it is stored.
+void check_sources(const std::map<Place, WholeItem>& items, std::vector<std::string>& complaints) {
+    std::map<std::int32_t, Piece> first;
+    std::set<std::int32_t> differing;
+    for (const auto& [place, item] : items)
+        for (const Piece& piece : item.pieces) {
+            if (!piece.stored()) continue;
+            const auto [known, is_new] = first.emplace(place[0], piece);
+            const ItemSource &a = known->second.shard->stored.at(known->second.item->name),
+                             &b = piece.shard->stored.at(piece.item->name);
+            if (is_new || a.source_hash == b.source_hash || !differing.insert(place[0]).second) continue;
+            complaints.push_back(
+                fmt::format("{}: shards {} and {} read different contents of this file; remove what the "
+                            "outdated one has made, and run it again",
+                            b.source, known->second.shard->name(), piece.shard->name()));
+        }
+}
+
 /// The shards agree about an item, and together have each chosen vertex once.
 void check_item(const WholeItem& item, std::vector<std::string>& complaints) {
-    const ShardItem& first = *item.pieces.front().item;
     std::int64_t own = 0;
+    const Piece *surface = item.first_stored(), *choice = item.first_chosen();
     for (const Piece& piece : item.pieces) {
         own += piece.item->own;
-        const bool same = piece.item->base == first.base && piece.item->chosen == first.chosen &&
-                          piece.item->chosen_xxh3 == first.chosen_xxh3;
-        if (same) continue;
+        // A shard that failed before it knew says nothing.
+        const bool same_surface = !piece.stored() || piece.item->base == surface->item->base;
+        const bool same_choice = !piece.chosen() || (piece.item->chosen == choice->item->chosen &&
+                                                     piece.item->chosen_xxh3 == choice->item->chosen_xxh3);
+        if (same_surface && same_choice) continue;
         complaints.push_back(fmt::format("{}: shards {} and {} found different surfaces or vertices",
-                                         item.name, item.pieces.front().shard->name(), piece.shard->name()));
+                                         item.name, (same_surface ? choice : surface)->shard->name(),
+                                         piece.shard->name()));
         return;
     }
-    if (item.given_up() || own == first.chosen) return;
-    std::string holders;
-    for (const Piece& piece : item.pieces) holders += (holders.empty() ? "" : ", ") + piece.shard->name();
+    const std::int64_t chosen = choice != nullptr ? choice->item->chosen : 0;
+    if (item.given_up() || own == chosen) return;
     complaints.push_back(fmt::format("{}: {} of its {} chosen vertices are in shards {}", item.name, own,
-                                     first.chosen, holders));
+                                     chosen, shards_of(item.pieces)));
 }
 
 /// Every input is there, with all resolutions of all its components, or as one that could not be read.
 void check_inputs(const std::map<Place, WholeItem>& items, const ShardTable& table,
                   std::vector<std::string>& complaints) {
-    std::map<std::int32_t, std::pair<bool, std::set<std::pair<std::int32_t, std::int32_t>>>> found;
+    struct Found {
+        std::string unreadable;  // by these shards
+        std::set<std::pair<std::int32_t, std::int32_t>> places;
+    };
+    std::map<std::int32_t, Found> found;
     for (const auto& [place, item] : items) {
-        auto& [unreadable, places] = found[place[0]];
         if (place[1] < 0)
-            unreadable = true;
+            found[place[0]].unreadable = shards_of(item.pieces);
         else
-            places.emplace(place[1], place[2]);
+            found[place[0]].places.emplace(place[1], place[2]);
     }
     for (std::int32_t input = 0; input < table.inputs; ++input) {
         const auto at = found.find(input);
@@ -95,8 +139,11 @@ void check_inputs(const std::map<Place, WholeItem>& items, const ShardTable& tab
         }
         const auto& [unreadable, places] = at->second;
         const std::string& name = items.lower_bound({input, -1, -1})->second.name;
-        if (unreadable && !places.empty())
-            complaints.push_back(fmt::format("{}: some shards could read this input, others not", name));
+        if (!unreadable.empty() && !places.empty())
+            complaints.push_back(
+                fmt::format("{}: shards {} could not read this input, others could: run those again with "
+                            "--retry-failed",
+                            name, unreadable));
         const std::int32_t components = places.empty() ? 0 : places.rbegin()->first + 1;
         if (places.size() !=
             static_cast<std::size_t>(components) * static_cast<std::size_t>(table.resolutions))
@@ -134,7 +181,7 @@ ItemState join(const WholeItem& item) {
             whole.vertex_count = part.vertex_count;
         } else if (digests != mesh) {
             throw ShardError({fmt::format("{}: shards {} and {} hold different meshes", item.name,
-                                          item.pieces.front().shard->name(), piece.shard->name())});
+                                          item.first_stored()->shard->name(), piece.shard->name())});
         }
         whole.rows.merge(part.rows);
         whole.factors.merge(part.factors);
@@ -145,9 +192,15 @@ ItemState join(const WholeItem& item) {
     if (item.given_up()) return whole;
     std::vector<Index> vertices;
     for (const auto& [vertex, row] : whole.rows) vertices.push_back(vertex);
-    if (digest_of_vertices(vertices) != item.pieces.front().item->chosen_xxh3)
+    const Piece* choice = item.first_chosen();
+    if (choice == nullptr || digest_of_vertices(vertices) != choice->item->chosen_xxh3)
         throw ShardError({item.name + ": the rows of all shards are not those of the chosen vertices"});
     return whole;
+}
+
+/// Of a file or of a resolution that gave no item: recorded under a name that is the same in all shards.
+bool before_any_item(const FailureRecord& failure) {
+    return failure.stage == "load" || failure.stage == "resample";
 }
 
 /// Failures by the names of the whole run, each once.
@@ -155,15 +208,18 @@ std::vector<FailureRecord> joined_failures(const std::vector<Shard>& shards,
                                            const std::map<Place, WholeItem>& items) {
     std::map<std::pair<const Shard*, std::string>, const std::string*> names;
     for (const auto& [place, item] : items)
-        for (const Piece& piece : item.pieces) names[{piece.shard, piece.item->name}] = &item.name;
+        for (const Piece& piece : item.pieces)
+            if (piece.stored()) names[{piece.shard, piece.item->name}] = &item.name;
     std::map<std::pair<std::string, std::string>, FailureRecord> failures;
     for (const Shard& shard : shards)
         for (FailureRecord failure : shard.failures) {
-            const auto name = names.find({&shard, failure.item});
-            if (name == names.end())
-                throw ShardError({fmt::format("shard {} ({}): a failure of {}, which is not in its table",
-                                              shard.name(), shard.path, failure.item)});
-            failure.item = *name->second;
+            if (!before_any_item(failure)) {
+                const auto name = names.find({&shard, failure.item});
+                if (name == names.end())
+                    throw ShardError({fmt::format("shard {} ({}): a failure of {}, which is not in its table",
+                                                  shard.name(), shard.path, failure.item)});
+                failure.item = *name->second;
+            }
             failures.emplace(std::pair(failure.item, failure.stage), failure);
         }
     std::vector<FailureRecord> joined;
@@ -181,6 +237,40 @@ RunInfo whole_info(const std::vector<Shard>& shards, const RunInfo& merger) {
     return info;
 }
 
+/// Kinds of processors, and the shards that ran on them; empty where all ran on one.
+std::vector<std::string> processor_warnings(const std::vector<Shard>& shards) {
+    std::map<std::string, std::string> kinds;
+    for (const Shard& shard : shards) {
+        if (shard.stored.empty()) continue;  // it computed nothing
+        std::string& names = kinds[shard.table.processors];
+        names += (names.empty() ? "" : ", ") + shard.name();
+    }
+    if (kinds.size() < 2 && (kinds.empty() || kinds.begin()->first.find("; ") == std::string::npos))
+        return {};
+    std::string text;
+    for (const auto& [kind, names] : kinds)
+        text +=
+            fmt::format("{}{} (shards {})", text.empty() ? "" : ", ", kind.empty() ? "unknown" : kind, names);
+    return {"not all on one kind of processor: " + text +
+            ". Results agree to the tolerance, but not to the last bit"};
+}
+
+/// Items that some shards gave up on and others finished.
+std::vector<std::string> gap_warnings(const std::map<Place, WholeItem>& items) {
+    std::vector<std::string> warnings;
+    for (const auto& [place, item] : items) {
+        std::vector<Piece> missing;
+        std::copy_if(item.pieces.begin(), item.pieces.end(), std::back_inserter(missing),
+                     [](const Piece& piece) { return piece.item->own < 0; });
+        if (missing.empty() || missing.size() == item.pieces.size()) continue;
+        warnings.push_back(
+            fmt::format("{}: without the rows of shards {}, which gave up on it (see /failures): run those "
+                        "again with --retry-failed, then merge again",
+                        item.name, shards_of(missing)));
+    }
+    return warnings;
+}
+
 void count_rows(const ItemState& state, std::optional<std::uint8_t> converged, MergedRun& merged) {
     merged.rows += state.rows.size();
     for (const auto& [vertex, row] : state.rows) merged.failed_rows += row.status == converged ? 0 : 1;
@@ -194,20 +284,25 @@ MergedRun merge_shards(const std::vector<std::string>& paths, const std::string&
     const ShardTable& table = shards.front().table;
     const std::map<Place, WholeItem> items = whole_items(shards);
     std::vector<std::string> complaints;
+    check_sources(items, complaints);
+    if (!complaints.empty()) throw ShardError(std::move(complaints));  // all else would follow from that
     check_inputs(items, table, complaints);
     for (const auto& [place, item] : items) check_item(item, complaints);
     if (!complaints.empty()) throw ShardError(std::move(complaints));
 
     MergedRun merged;
     merged.shards = shards.size();
+    merged.warnings = gap_warnings(items);
+    for (std::string& warning : processor_warnings(shards)) merged.warnings.push_back(std::move(warning));
     const RunInfo info = whole_info(shards, merger);
     const auto converged = schema::converged_status(info.status);
     std::map<std::string, const WholeItem*> by_name;
     ItemState current;
     ResultSource source;
     for (const auto& [place, item] : items) {
+        if (!item.stored()) continue;
         by_name.emplace(item.name, &item);
-        if (item.stored()) source.items.push_back(item.name);
+        source.items.push_back(item.name);
     }
     source.failures = joined_failures(shards, items);
     source.state = [&](const std::string& name) -> const ItemState& {

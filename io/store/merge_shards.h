@@ -27,10 +27,12 @@ struct MergedRun {
     std::size_t shards = 0, items = 0;
     std::size_t rows = 0, failed_rows = 0;  // all of them, and those that did not converge
     std::size_t failures = 0;               // rows of /failures
+    std::vector<std::string> warnings{};    // for the log; the file is a whole run all the same
 };
 
 /// Checks that `shards` are complete, sound, and all those of one run, and writes that run to `output`, each
-/// dataset the same bits as without shards (*/seconds aside); one item at a time is in memory. `merger` gives
+/// dataset the same bits as without shards (*/seconds aside) where all ran on one kind of processor; one item
+/// at a time is in memory. `merger` gives
 /// command and host; the rest comes from the shards. An existing `output` is replaced only by a whole and
 /// verified file. Throws ShardError when the files do not make up a run, FileError when one cannot be read or
 /// `output` cannot be written.

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,6 +37,7 @@ struct ItemState {
 
 /// What is finished of a run.
 struct RunState {
+    std::set<std::string> processors;  // of all starts
     std::map<std::string, ItemState> items;
     std::map<std::pair<std::string, std::string>, FailureRecord> failures;  // by item and stage
 };

@@ -7,12 +7,14 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
 #include "io/store/assemble.h"
 #include "io/store/run_state.h"
 #include "io/store/schema.h"
+#include "io/store/schema_shard.h"
 #include "io/store/segment_folder.h"
 #include "io/store/verify_file.h"
 
@@ -24,6 +26,20 @@ namespace fs = std::filesystem;
 FailureRecord stored_failure(const FailureRecord& failure) {
     return {hdf5::stored_text(failure.item), hdf5::stored_text(failure.stage),
             hdf5::stored_text(failure.status), hdf5::stored_text(failure.message)};
+}
+
+constexpr std::string_view kBetweenProcessors = "; ";
+
+std::string joined(const std::set<std::string>& processors) {
+    return fmt::format("{}", fmt::join(processors, kBetweenProcessors));
+}
+
+void take_processors(const std::string& text, std::set<std::string>& processors) {
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find(kBetweenProcessors, begin), text.size());
+        processors.insert(text.substr(begin, end - begin));
+        begin = end + kBetweenProcessors.size();
+    }
 }
 
 }  // namespace
@@ -38,12 +54,13 @@ struct RunStore::Impl {
     void start_afresh(bool resume);
     void resume_journal();
     bool resume_output();
+    void note_processor();
     void write_segment(const std::string& kind, const std::string& item, const std::vector<Index>& vertices,
                        const std::function<void(hid_t item_group)>& fill);
     ItemState& writable_item(const std::string& name);
     [[nodiscard]] const ItemState* find_item(const std::string& name) const;
     [[nodiscard]] JournalHeader header() const {
-        return {hdf5::stored_text(info.fingerprint), info.status.names};
+        return {hdf5::stored_text(info.fingerprint), info.status.names, hdf5::stored_text(info.processor)};
     }
 
     const RunInfo info;
@@ -58,6 +75,20 @@ RunStore::Impl::Impl(std::string output, RunInfo run_info, bool resume)
         resume_journal();
     else
         start_afresh(resume);
+    note_processor();
+}
+
+void RunStore::Impl::note_processor() {
+    const std::string own = hdf5::stored_text(info.processor);
+    if (own.empty() || state.processors.contains(own)) return;
+    if (!state.processors.empty()) {
+        parts.add_note(
+            fmt::format("{}: begun on another kind of processor ({}; here: {}): results agree to the "
+                        "tolerance, but not to the last bit",
+                        parts.output(), joined(state.processors), own));
+        parts.append({"processor", own, "", {}, 0, {}});
+    }
+    state.processors.insert(own);
 }
 
 void RunStore::Impl::start_afresh(bool resume) {
@@ -83,6 +114,7 @@ bool RunStore::Impl::resume_output() {
         const hdf5::Handle file = hdf5::open_input(output);
         const RunInfo stored = schema::read_run_info(file);
         SegmentFolder::require_same_run(output, {stored.fingerprint, stored.status.names}, header());
+        if (const auto shard = schema::read_shard(file)) take_processors(shard->processors, state.processors);
     }
     parts.rely_on_output();
     merge_contents(state, read_contents(output, output, info.status));
@@ -100,6 +132,8 @@ void RunStore::Impl::resume_journal() {
             const std::pair key(entry.failure.item, entry.failure.stage);
             if (entry.kind == "base")
                 resume_output();
+            else if (entry.kind == "processor")
+                state.processors.insert(entry.name);
             else if (entry.kind == "failure")
                 state.failures.insert_or_assign(key, entry.failure);
             else
@@ -348,8 +382,13 @@ void RunStore::assemble(const std::vector<std::string>& items, const KeepPolicy&
     std::vector<std::string> names;
     names.reserve(items.size());
     for (const std::string& item : items) names.push_back(hdf5::stored_text(item));
+    std::optional<ShardTable> table;
+    if (shard != nullptr) {
+        table = *shard;
+        if (!impl_->state.processors.empty()) table->processors = joined(impl_->state.processors);
+    }
     impl_->parts.replace_output([&](const std::string& temporary) {
-        write_result_file(temporary, impl_->info, impl_->state, names, keep, shard);
+        write_result_file(temporary, impl_->info, impl_->state, names, keep, table ? &*table : nullptr);
     });
     for (auto& [name, item] : impl_->state.items) {
         if (!item.file.empty()) item.file = impl_->parts.output();  // for read_item

@@ -28,7 +28,9 @@ struct RunInfo {
         fingerprint;  // what must be equal for --resume: the part of the configuration that decides results
     std::int32_t threads = 1;
     StatusNames status;
-    std::string created;  // ISO 8601, UTC; set by read_run, ignored by RunStore
+    std::string processor{};  // what decides the last bits on this machine; "": not recorded. In the journal,
+                              // and in what a shard says of itself
+    std::string created;      // ISO 8601, UTC; set by read_run, ignored by RunStore
 };
 
 /// Text as the store keeps it.

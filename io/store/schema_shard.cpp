@@ -60,6 +60,7 @@ std::vector<ShardItem> read_items(hid_t group) {
     read_column(group, "chosen", items, &ShardItem::chosen);
     read_column(group, "own", items, &ShardItem::own);
     read_column(group, "chosen_xxh3", items, &ShardItem::chosen_xxh3);
+    read_column(group, "stored", items, &ShardItem::stored);
     return items;
 }
 
@@ -74,6 +75,7 @@ void write_shard(hid_t root, const ShardTable& table) {
     hdf5::write_text_attribute(group, "plan", table.plan);
     hdf5::write_text_attribute(group, "config", table.config);
     hdf5::write_text_attribute(group, "fingerprint", table.fingerprint);
+    hdf5::write_text_attribute(group, "processors", table.processors);
     hdf5::write_attribute<std::uint8_t>(group, "keep_best", static_cast<std::uint8_t>(table.keep.best));
     hdf5::write_attribute<std::uint8_t>(group, "keep_worst", static_cast<std::uint8_t>(table.keep.worst));
     hdf5::write_attribute<std::int64_t>(group, "keep_count", table.keep.count);
@@ -86,6 +88,7 @@ void write_shard(hid_t root, const ShardTable& table) {
     write_column(group, "chosen", table.items, &ShardItem::chosen);
     write_column(group, "own", table.items, &ShardItem::own);
     write_column(group, "chosen_xxh3", table.items, &ShardItem::chosen_xxh3);
+    write_column(group, "stored", table.items, &ShardItem::stored);
 }
 
 std::optional<ShardTable> read_shard(hid_t root) {
@@ -101,6 +104,7 @@ std::optional<ShardTable> read_shard(hid_t root) {
     table.plan = hdf5::read_text_attribute(group, "plan");
     table.config = hdf5::read_text_attribute(group, "config");
     table.fingerprint = hdf5::read_text_attribute(group, "fingerprint");
+    table.processors = hdf5::read_text_attribute(group, "processors");
     table.keep.best = hdf5::read_attribute<std::uint8_t>(group, "keep_best") != 0;
     table.keep.worst = hdf5::read_attribute<std::uint8_t>(group, "keep_worst") != 0;
     table.keep.count = hdf5::read_attribute<std::int64_t>(group, "keep_count");

@@ -99,10 +99,11 @@ void SegmentFolder::resume(
     require_same_run(folder_, contents.header, header);
     notes_.insert(notes_.end(), contents.notes.begin(), contents.notes.end());
     journal_.emplace(Journal::reopen(folder_, contents));
+    if (!contents.header.processor.empty()) other({"processor", contents.header.processor, "", {}, 0, {}});
     const std::set<std::string> dropped = dropped_segments(contents.entries);
     for (const JournalEntry& entry : contents.entries) {
         next_segment_ = std::max(next_segment_, segment_number(entry.name) + 1);
-        has_work_ = has_work_ || (entry.kind != "base" && entry.kind != "drop");
+        has_work_ = has_work_ || entry.result();
         if (!entry.segment()) {
             if (entry.kind != "drop") other(entry);
             continue;
@@ -162,7 +163,7 @@ void SegmentFolder::write_segment(
 void SegmentFolder::append(const JournalEntry& entry) {
     if (!journal_) throw std::logic_error("the run is assembled: it takes no more results");
     journal_->append(entry);
-    has_work_ = has_work_ || (entry.kind != "base" && entry.kind != "drop");
+    has_work_ = has_work_ || entry.result();
 }
 
 void SegmentFolder::rely_on_output() {
@@ -189,7 +190,7 @@ void SegmentFolder::replace_output(const std::function<void(const std::string& t
         const std::vector<std::string> complaints = verify_result_file(temporary);
         if (!complaints.empty()) throw FileError(temporary + ": read back wrong: " + complaints.front());
         rename_durably(temporary, output_);
-    } catch (const FileError&) {
+    } catch (...) {  // `write` may throw anything
         ::unlink(temporary.c_str());
         throw;
     }

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "io/store/hdf5_file.h"
@@ -45,7 +46,11 @@ std::optional<Shard> read_shard_file(const std::string& path, Complaints& compla
     shard.table = std::move(*table);
     shard.failures = schema::read_failures(file);
     const hdf5::Handle items = hdf5::open_group(file, "items");
-    for (const std::string& name : hdf5::link_names(items)) shard.stored.insert(name);
+    for (const std::string& name : hdf5::link_names(items)) {
+        const hdf5::Handle item = hdf5::open_group(items, name);
+        shard.stored[name] = {hdf5::read_text_attribute(item, "source"),
+                              hdf5::read_text_attribute(item, "source_hash")};
+    }
     return shard;
 }
 
@@ -97,19 +102,24 @@ void check_rows(const std::vector<Shard>& shards, Complaints& complaints) {
     for (const Shard& shard : shards) {
         const hdf5::Handle file = hdf5::open_input(shard.path);
         const hdf5::Handle items = hdf5::open_group(file, "items");
+        const auto complain = [&](const std::string& what) {
+            complaints.push_back(fmt::format("shard {} ({}): {}", shard.name(), shard.path, what));
+        };
         std::set<std::string> known;
         for (const ShardItem& item : shard.table.items) {
-            known.insert(item.name);
+            const bool stored = item.stored != 0;
+            if (stored && !known.insert(item.name).second) complain(item.name + " is twice in its table");
+            if (stored && !shard.stored.contains(item.name)) {
+                complain(item.name + " is in its table, its mesh nowhere");
+                continue;
+            }
             if (item.own < 0) continue;
-            const std::size_t rows = shard.stored.contains(item.name) ? stored_rows(items, item.name) : 0;
+            const std::size_t rows = stored ? stored_rows(items, item.name) : 0;
             if (rows != static_cast<std::size_t>(item.own))
-                complaints.push_back(fmt::format("shard {} ({}): {} has {} rows, not {}", shard.name(),
-                                                 shard.path, item.name, rows, item.own));
+                complain(fmt::format("{} has {} rows, not {}", item.name, rows, item.own));
         }
-        for (const std::string& name : shard.stored)
-            if (!known.contains(name))
-                complaints.push_back(
-                    fmt::format("shard {} ({}): {} is not in its table", shard.name(), shard.path, name));
+        for (const auto& [name, source] : shard.stored)
+            if (!known.contains(name)) complain(name + " is not in its table");
     }
 }
 

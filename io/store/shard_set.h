@@ -1,7 +1,7 @@
 // The files of the shards of one run, read and checked as a set.
 #pragma once
 
-#include <set>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,7 +15,7 @@ struct Shard {
     RunInfo info;
     ShardTable table;
     std::vector<FailureRecord> failures;
-    std::set<std::string> stored;  // items with a mesh
+    std::map<std::string, ItemSource> stored;  // items with a mesh
 
     [[nodiscard]] std::string name() const { return shard_name(table.index, table.count); }
 };

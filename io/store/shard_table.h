@@ -17,6 +17,8 @@ struct ShardItem {
     std::int32_t component = -1, resolution = -1;  // its place in the input; -1: the input could not be read
     std::int32_t chosen = -1, own = -1;  // vertices chosen, and this shard's; -1: failed before they were
     std::uint64_t chosen_xxh3 = 0;       // XXH3-64 of the chosen vertices, ascending, as i4
+    std::uint8_t stored = 0;  // its mesh is in this file; else `name` is only that of a failure, and may be
+                              // the name of another file's item as well
 };
 
 /// The group `shard` of a result file.
@@ -25,6 +27,7 @@ struct ShardTable {
     std::int32_t inputs = 0, resolutions = 1;  // of the whole run
     std::string plan;                          // digest of who does what, equal in all shards
     std::string config, fingerprint;           // RunInfo's, of the whole run
+    std::string processors;                    // RunInfo::processor of all starts, "; " between them
     KeepPolicy keep;
     std::vector<ShardItem> items;  // in the order of the whole run
 };

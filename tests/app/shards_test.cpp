@@ -9,6 +9,7 @@
 
 #include "engine/app/sweep_plan.h"
 #include "io/store/run_store.h"
+#include "kernels/instruction_set.h"
 #include "tests/support/digests.h"
 #include "tests/support/program.h"
 
@@ -173,6 +174,146 @@ TEST(Shards, InputsThatChangedAreNoticed) {
         run_ricci(folder, {"merge", folder / "0.h5", folder / "1.h5", "-o", folder / "whole.h5"});
     EXPECT_EQ(merged.status, 2);
     EXPECT_NE(merged.err.find("input files were not the same"), std::string::npos) << merged.err;
+}
+
+/// Runs `count` shards, merges them, and returns what the merge said.
+ProgramResult merged_shards(const TemporaryFolder& folder, const Words& sweep, int count) {
+    Words merge{"merge", "-o", folder / "merged.h5"};
+    for (int i = 0; i < count; ++i) {
+        run_shard(folder, sweep, i, count);
+        merge.push_back(shard_file(folder, i, count));
+    }
+    return run_ricci(folder, merge);
+}
+
+/// A surface that cannot be resampled would have had the name that another file's item has.
+TEST(Shards, AFailureDoesNotTakeTheNameOfAnotherFilesItem) {
+    const TemporaryFolder folder;
+    for (const char* sub : {"a", "b", "c"}) fs::create_directory(folder / sub);
+    ASSERT_EQ(run_ricci(folder, {"generate", "bolza", "--faces", "256", "-o", folder / "a/scan.len"}).status,
+              0);
+    fs::rename(make(folder, "eight", 700), folder / "b/scan.off");
+    fs::copy_file(folder / "b/scan.off", folder / "c/scan.off");
+    const std::string a = folder / "a/scan.len", b = folder / "b/scan.off", c = folder / "c/scan.off";
+    for (const Words& order : {Words{a, b, c}, Words{b, a, c}, Words{b, c, a}}) {
+        for (const char* name : {"whole.h5", "s0of2.h5", "s1of2.h5"}) fs::remove(folder / name);
+        const Words sweep = with(with({"sweep"}, order),
+                                 {"--vertices", "sample:20", "--resolutions", "300", "--threads", "1"});
+        ASSERT_EQ(run_ricci(folder, with(sweep, {"-o", folder / "whole.h5"})).status, 1);
+        const ProgramResult merged = merged_shards(folder, sweep, 2);
+        ASSERT_EQ(merged.status, 1) << merged.err;
+        EXPECT_NE(merged.out.find("2 items, 40 rows"), std::string::npos) << merged.out;
+        EXPECT_EQ(digests(folder / "merged.h5"), digests(folder / "whole.h5"));
+        const FailureRecord failure = read_run(folder / "merged.h5").failures.at(0);
+        EXPECT_EQ(failure.item, read_run(folder / "whole.h5").failures.at(0).item);
+        EXPECT_EQ(failure.stage, "resample");
+    }
+}
+
+TEST(Shards, OtherContentsOfTheSameSizeAreNoticed) {
+    const TemporaryFolder folder;
+    const std::string mesh = make(folder, "eight", 800);
+    // Too little to be cut: each shard has one resolution, and no mesh of the other's.
+    const Words sweep{"sweep", mesh, "--vertices", "sample:10", "--resolutions", "input,700", "-q"};
+    run_shard(folder, sweep, 0, 2);
+    std::string text = testing::read_text(mesh);
+    const std::size_t digit = text.find('.') + 3;
+    text[digit] = text[digit] == '5' ? '4' : '5';
+    write_text(mesh, text);
+    run_shard(folder, sweep, 1, 2);
+    for (const int i : {0, 1}) EXPECT_EQ(item_names(shard_file(folder, i, 2)).size(), 1U);
+    const ProgramResult merged = run_ricci(
+        folder, {"merge", shard_file(folder, 0, 2), shard_file(folder, 1, 2), "-o", folder / "merged.h5"});
+    EXPECT_EQ(merged.status, 2);
+    EXPECT_NE(merged.err.find(mesh + ": shards 1/2 and 0/2 read different contents"), std::string::npos)
+        << merged.err;
+    EXPECT_FALSE(fs::exists(folder / "merged.h5.parts"));
+}
+
+TEST(Shards, ThePlanDependsOnTheListOfVertices) {
+    const TemporaryFolder folder;
+    const std::string list = folder / "vertices.txt";
+    const std::vector<std::string> files{make(folder, "eight", 600)};
+    app::SweepConfig config;
+    config.vertices = list;
+    config.shard = "0/2";
+    std::vector<std::string> plans;
+    for (const char* vertices : {"5\n7\n9\n", "9\n5\n7\n", "5\n7\n8\n"}) {
+        write_text(list, vertices);
+        plans.push_back(app::SweepPlan(config, files, 1).digest());
+    }
+    EXPECT_EQ(plans[0], plans[1]);
+    EXPECT_NE(plans[0], plans[2]);
+}
+
+/// A shard that dies of an item before it knows its vertices does not hold the others up.
+TEST(Shards, AnItemThatOneShardCouldNotPrepareIsAFailureAndCanBeTriedAgain) {
+    const TemporaryFolder folder;
+    const std::string mesh = make(folder, "eight", 800);
+    const Words sweep{"sweep", mesh, "--vertices", "sample:60", "--threads", "1"};
+    ASSERT_EQ(run_ricci(folder, with(sweep, {"-o", folder / "whole.h5"})).status, 0);
+    const Words second = with(sweep, {"--shard", "1/2", "-o", shard_file(folder, 1, 2)});
+    EXPECT_EQ(run_with_fault(folder, second, "prepare:1:throw").status, 1);
+    const ProgramResult merged = merged_shards(folder, sweep, 2);
+    ASSERT_EQ(merged.status, 1) << merged.err;
+    EXPECT_NE(merged.err.find("without the rows of shards 1/2"), std::string::npos) << merged.err;
+    const StoredRun run = read_run(folder / "merged.h5");
+    ASSERT_EQ(run.failures.size(), 1U);
+    EXPECT_EQ(run.failures[0].status, "internal_error");
+    EXPECT_GT(run.items.at(0).sweep->rows.size(), 0U);
+    EXPECT_LT(run.items.at(0).sweep->rows.size(), 60U);
+
+    EXPECT_EQ(run_ricci(folder, with(second, {"--retry-failed"})).status, 0);
+    EXPECT_EQ(merged_shards(folder, sweep, 2).status, 0);
+    EXPECT_EQ(digests(folder / "merged.h5"), digests(folder / "whole.h5"));
+}
+
+/// A file that cannot be loaded for the plan counts by its size, and so does one that is too large for that.
+TEST(Shards, ThePlanSurvivesWhatItCannotLoad) {
+    const TemporaryFolder folder;
+    const std::string mesh = make(folder, "eight", 800);
+    const Words sweep{"sweep", mesh, "--vertices", "sample:60", "--threads", "1"};
+    ASSERT_EQ(run_ricci(folder, with(sweep, {"-o", folder / "whole.h5"})).status, 0);
+    Words merge{"merge", "-o", folder / "merged.h5"};
+    for (int i = 0; i < 2; ++i) {
+        merge.push_back(shard_file(folder, i, 2));
+        const ProgramResult shard = run_with_fault(
+            folder, with(sweep, {"--shard", std::to_string(i) + "/2", "-o", merge.back()}), "plan:1:throw");
+        EXPECT_EQ(shard.status, 0) << shard.err;
+        EXPECT_NE(shard.err.find("topology of 0 files and the size of 1"), std::string::npos) << shard.err;
+    }
+    EXPECT_EQ(run_ricci(folder, merge).status, 0);
+    EXPECT_EQ(digests(folder / "merged.h5"), digests(folder / "whole.h5"));
+
+    write_text(folder / "large.off", "OFF\n");
+    fs::resize_file(folder / "large.off", 400'000'000);  // no bytes on disk
+    app::SweepConfig config;
+    config.shard = "0/2";
+    const app::SweepPlan plan(config, {mesh, folder / "large.off"}, 64);
+    EXPECT_NE(plan.division().find("topology of 1 files and the size of 1"), std::string::npos)
+        << plan.division();
+}
+
+TEST(Shards, OtherKindsOfProcessorsAreNamed) {
+    if (best_instruction_set() == InstructionSet::baseline) GTEST_SKIP() << "there is but one set";
+    const TemporaryFolder folder;
+    const Words sweep{"sweep", make(folder, "eight", 800), "--vertices", "sample:60", "--threads", "1"};
+    const Words first = with(sweep, {"--shard", "0/2", "-o", shard_file(folder, 0, 2), "--resume"});
+    ASSERT_EQ(merged_shards(folder, sweep, 2).err.find("kind of processor"), std::string::npos);
+
+    fs::remove(shard_file(folder, 0, 2));
+    ::setenv("RICCI_INSTRUCTION_SET", "baseline", 1);
+    const ProgramResult stopped = run_with_fault(folder, first, "segment_written:2");
+    ::unsetenv("RICCI_INSTRUCTION_SET");
+    EXPECT_EQ(stopped.status, 128 + SIGKILL);
+    const ProgramResult resumed = run_ricci(folder, first);
+    EXPECT_EQ(resumed.status, 0);
+    EXPECT_NE(resumed.err.find("begun on another kind of processor (lanes baseline"), std::string::npos)
+        << resumed.err;
+    const ProgramResult merged = merged_shards(folder, sweep, 2);
+    EXPECT_EQ(merged.status, 0) << merged.err;
+    EXPECT_NE(merged.err.find("not all on one kind of processor: lanes "), std::string::npos) << merged.err;
+    EXPECT_NE(merged.err.find("; lanes baseline"), std::string::npos) << merged.err;
 }
 
 /// How much of each unit the shards have, and what their plans say of themselves.

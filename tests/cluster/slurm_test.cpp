@@ -86,6 +86,13 @@ TEST_F(Slurm, AnArrayJobOverTwoNodesEqualsTheRunHere) {
     const nlohmann::json again = submit(sweep, folder_ / "cluster.h5", 4);
     ASSERT_EQ(cluster_->wait_for_job(again["merge_job"]), "COMPLETED");
     EXPECT_NE(logs_of(shards).find("finished before"), std::string::npos);
+    Words retrying = sweep;
+    retrying.emplace_back("--retry-failed");
+    const nlohmann::json retry = submit(retrying, folder_ / "cluster.h5", 4);
+    ASSERT_EQ(cluster_->wait_for_job(retry["merge_job"]), "COMPLETED") << logs_of(shards);
+    const std::string log = read_text(shards + "/logs/" + retry["array_job"].get<std::string>() + "_0.log");
+    EXPECT_EQ(log.find("finished before"), std::string::npos) << log;
+    EXPECT_EQ(digests(folder_ / "cluster.h5"), digests(folder_ / "here.h5"));
     EXPECT_EQ(
         run_ricci(folder_, {"submit", "--slurm", "--shards", "5", "-o", folder_ / "cluster.h5", sweep[0]})
             .status,

@@ -37,6 +37,7 @@ struct ShardSample {
     std::vector<Part> parts;
     bool unreadable = false;  // input 3
     double raise = 0.0;       // of the first point: another mesh
+    std::string hash;         // of the input files
     std::string given_up;     // an item that failed as a whole, by its name in the shard
 
     void write(const std::string& path) const;
@@ -50,6 +51,7 @@ void ShardSample::write(const std::string& path) const {
         ItemRecord item = sample_item(names.empty() ? "a@18" : "a@18~" + std::to_string(names.size() + 1), 3);
         item.source = "input" + std::to_string(part.input);
         item.points[0][0] += raise;
+        if (!hash.empty()) item.source_hash = hash;
         store.write_item(item);
         names.push_back(item.name);
         const bool failed = item.name == given_up;
@@ -57,11 +59,11 @@ void ShardSample::write(const std::string& path) const {
         if (failed) store.write_failure({item.name, "sweep", "out_of_memory", "too big"});
         own.items.push_back({item.name, "a@18", part.input, 0, 0, kRows,
                              failed ? -1 : static_cast<std::int32_t>(part.vertices.size()),
-                             digest_of_vertices(all_rows())});
+                             digest_of_vertices(all_rows()), 1});
     }
     if (unreadable) {
         store.write_failure({"b", "load", "invalid_input", "cut off"});
-        own.items.push_back({"b", "b", 3, -1, -1, -1, -1, 0});
+        own.items.push_back({"b", "b", 3, -1, -1, -1, -1, 0, 0});
     }
     store.assemble(names, own.keep, &own);
 }
@@ -215,6 +217,22 @@ TEST_F(MergeShards, EveryChosenVertexComesOnce) {
     EXPECT_FALSE(complaint().empty()) << "another mesh";
 }
 
+TEST_F(MergeShards, OtherContentsOfAnInputAreNamed) {
+    samples_[2].hash = "00000000000000aa";
+    expect_word(complaint(), "input1: shards 1/3 and 2/3 read different contents of this file");
+}
+
+TEST_F(MergeShards, OtherProcessorsAreNamed) {
+    for (ShardSample& sample : samples_) sample.table.processors = "lanes avx512";
+    EXPECT_TRUE(merge_shards(write(), output(), sample_info()).warnings.empty());
+    samples_[1].table.processors = "lanes avx2";
+    const MergedRun mixed = merge_shards(write(), output(), sample_info());
+    ASSERT_EQ(mixed.warnings.size(), 1U);
+    expect_word(mixed.warnings[0], "lanes avx2 (shards 1/3), lanes avx512 (shards 0/3, 2/3)");
+    for (ShardSample& sample : samples_) sample.table.processors = "lanes avx2; lanes avx512";
+    EXPECT_EQ(merge_shards(write(), output(), sample_info()).warnings.size(), 1U) << "mixed within each";
+}
+
 // An item that one shard gave up on is a failure in the whole run, with the rows there are.
 TEST_F(MergeShards, AnItemGivenUpStaysAFailure) {
     samples_[2].given_up = "a@18";
@@ -223,6 +241,8 @@ TEST_F(MergeShards, AnItemGivenUpStaysAFailure) {
     const StoredRun run = read_run(output());
     EXPECT_EQ(run.items.at(1).sweep->rows.size(), 2U);
     EXPECT_EQ(run.failures.at(0).item, "a@18~2");
+    ASSERT_EQ(merged.warnings.size(), 1U);
+    expect_word(merged.warnings[0], "a@18~2: without the rows of shards 2/3");
 }
 
 TEST_F(MergeShards, TheOldFileStaysUntilTheNewOneIsWhole) {

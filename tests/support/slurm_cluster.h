@@ -101,9 +101,29 @@ class SlurmCluster {
         return text;
     }
 
-    /// Polls. Throws when the controller ends before.
+    /// Far beyond what anything here takes, on a busy machine too.
+    static std::chrono::seconds patience() {
+        return std::chrono::seconds(std::getenv("RICCI_SLURM_DEFAULTS") != nullptr ? 1200 : 400);
+    }
+
+    /// What the jobs are doing, and the ends of the daemons' logs.
+    [[nodiscard]] std::string state() const {
+        std::string text = output("squeue -t all 2>&1; sinfo -N 2>&1");
+        for (const char* log : {"slurmctld.out", "slurmctld.log", "n1.out", "n1.log", "n2.out", "n2.log"}) {
+            const std::string all = read_text(folder_ / log);
+            text += std::string("--- ") + log + "\n" +
+                    all.substr(all.size() - std::min<std::size_t>(all.size(), 3000));
+        }
+        return text;
+    }
+
+    /// Polls. Throws when the controller ends before, or when it takes longer than patience().
     void wait_until(const std::function<bool()>& condition) const {
+        const auto start = std::chrono::steady_clock::now();
         while (!condition()) {
+            if (std::chrono::steady_clock::now() - start > patience())
+                throw std::runtime_error("waited " + std::to_string(patience().count()) + " s in vain:\n" +
+                                         state());
             if (waitpid(controller_, nullptr, WNOHANG) == controller_)
                 throw std::runtime_error("slurmctld ended:\n" + read_text(folder_ / "slurmctld.out") +
                                          read_text(folder_ / "slurmctld.log"));
@@ -111,17 +131,21 @@ class SlurmCluster {
         }
     }
 
-    /// The state of a job that has ended, like COMPLETED; waits for that.
+    /// The state of a job that has ended, like COMPLETED; waits for that. One that does not end: its state
+    /// and how long that took, for the test to show with the job's own logs.
     [[nodiscard]] std::string wait_for_job(const std::string& job) const {
         std::string state;
+        const auto start = std::chrono::steady_clock::now();
+        bool given_up = false;
         wait_until([&] {
             state = output("squeue -h -t all -o %T -j " + job);
             state = state.substr(0, state.find('\n'));
             static const std::set<std::string> kUnderWay{
                 "PENDING", "RUNNING", "COMPLETING", "CONFIGURING", "REQUEUED", "SUSPENDED", ""};
-            return !kUnderWay.contains(state);
+            given_up = std::chrono::steady_clock::now() - start > patience() - std::chrono::seconds(10);
+            return given_up || !kUnderWay.contains(state);
         });
-        return state;
+        return given_up ? state + " after " + std::to_string(patience().count()) + " s" : state;
     }
 
     /// The power failure of a node: its daemon, the step's and the job's processes are gone at once.
