@@ -24,9 +24,10 @@
 namespace ricci::app {
 namespace {
 
-// Seconds of one thread on surfaces of V vertices, measured once (docs/results/shard_balance.md). Only their
-// ratios matter, and no host may measure its own: all shards must find the same numbers. No function of the
-// mathematical library either, whose last digit depends on the processor.
+// Seconds of one thread on surfaces of V vertices, measured once; docs/results/shard_balance.md shows how
+// evenly they divide the sample meshes. Only their ratios matter, and no host may measure its own: all shards
+// must find the same numbers. No function of the mathematical library either, whose last digit depends on the
+// processor.
 constexpr double kLoadFile = 5e-3, kLoadVertex = 2e-6;
 constexpr double kResampleVertex = 1e-5;  // of the input
 constexpr double kSetUp = 1e-3, kSetUpVertex = 2e-5;

@@ -17,7 +17,9 @@ namespace ricci {
 struct JournalHeader {
     std::string fingerprint;
     std::vector<std::string> status_names;
-    std::string processor{};  // RunInfo's of the first start; "": not recorded
+    /// RunInfo's of the first start; "": not recorded. SegmentFolder::resume() hands it on as if it were a
+    /// line of kind "processor".
+    std::string processor{};
 };
 
 /// Vertices first, first + 1, ... first + count - 1.

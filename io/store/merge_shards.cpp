@@ -223,6 +223,7 @@ std::vector<FailureRecord> joined_failures(const std::vector<Shard>& shards,
             failures.emplace(std::pair(failure.item, failure.stage), failure);
         }
     std::vector<FailureRecord> joined;
+    joined.reserve(failures.size());
     for (auto& [key, failure] : failures) joined.push_back(std::move(failure));
     return joined;
 }
