@@ -9,6 +9,7 @@
 #include "engine/app/isolation/isolated_sweep.h"
 #include "engine/app/processor_kind.h"
 #include "engine/app/records.h"
+#include "engine/app/shard_record.h"
 #include "engine/app/sweep_arguments.h"
 #include "engine/app/sweep_run.h"
 
@@ -113,7 +114,6 @@ int dry_run(const SweepConfig& config, const std::vector<std::string>& files, co
 struct Swept {
     std::vector<SweepItem> items;
     bool any_failure = false;
-    std::optional<ShardTable> shard{};
 };
 
 /// Everything, or this machine's part of it.
@@ -136,13 +136,14 @@ Swept run_here(const SweepConfig& config, const std::vector<SweepSource>& source
     SweepRun run(config, sources, plan, records, progress);
     run_sweeps(
         plan.files().size(), [&](std::size_t i) { return run.open(i); }, run, options);
-    return {run.items(), run.any_failure(), plan.sharded() ? std::optional(run.shard_table()) : std::nullopt};
+    return {run.items(), run.any_failure()};
 }
 
 Swept run_in_children(const SweepConfig& config, const std::vector<SweepSource>& sources,
-                      StoreRecords& records, ProgressLine& progress, std::int64_t max_memory) {
-    IsolatedSweep run(config, sources, records, progress);
-    run_isolated(sources.size(), run,
+                      const SweepPlan& plan, StoreRecords& records, ProgressLine& progress,
+                      std::int64_t max_memory) {
+    IsolatedSweep run(config, sources, plan, records, progress);
+    run_isolated(plan.files().size(), run,
                  {config.threads, max_memory, config.hang_timeout, [] { return caught_signal() != 0; }});
     return {run.items(), run.any_failure()};
 }
@@ -177,7 +178,7 @@ int sweep(const SweepConfig& config, const CommonOptions& common, bool dry) {
     ProgressLine progress(common.quiet);
     StoreRecords records(&store, config.retry_failed, progress);
     const std::vector<SweepSource> sources = sweep_sources(files);
-    const Swept swept = config.isolate ? run_in_children(config, sources, records, progress, max_memory)
+    const Swept swept = config.isolate ? run_in_children(config, sources, plan, records, progress, max_memory)
                                        : run_here(config, sources, plan, records, progress, max_memory);
     progress.clear();
     if (const int signal = caught_signal(); signal != 0) {
@@ -197,7 +198,9 @@ int sweep(const SweepConfig& config, const CommonOptions& common, bool dry) {
     if (unread > 0)
         spdlog::warn("{} items are stored as an earlier start left them: their files cannot be read any more",
                      unread);
-    store.assemble(names, parse_keep(config.keep), swept.shard ? &*swept.shard : nullptr);
+    std::optional<ShardTable> shard;
+    if (plan.sharded()) shard = make_shard_table(config, plan, swept.items);
+    store.assemble(names, parse_keep(config.keep), shard ? &*shard : nullptr);
     std::vector<std::string> failed_items;
     for (const FailureRecord& failure : store.failures()) failed_items.push_back(failure.item);
     remove_other_bundles(config.output, failed_items);

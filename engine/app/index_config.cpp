@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <sstream>
 
 #include "engine/app/console.h"
 #include "engine/app/solve_options.h"
@@ -15,7 +14,8 @@ namespace {
 
 template <class T>
 void take(const toml::table& root, const char* table, const char* key, T& value) {
-    const auto found = root[table][key].value<T>();
+    const toml::node* node = root[table][key].node();
+    const auto found = node == nullptr ? std::optional<T>() : toml_value<T>(*node);
     if (!found) throw UsageError(fmt::format("the index lacks its option [{}] {}", table, key));
     value = *found;
 }
@@ -85,9 +85,7 @@ std::string to_toml(const IndexConfig& c) {
                                                  {"count", c.count},
                                                  {"coordinates", c.coordinates},
                                                  {"fingerprint", c.fingerprint}}}};
-    std::ostringstream text;
-    text << root << "\n";
-    return text.str();
+    return toml_text(root);
 }
 
 IndexConfig index_config_from_toml(const std::string& text) {

@@ -4,7 +4,6 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
-#include <sstream>
 
 #include "engine/app/records.h"
 #include "engine/app/solve_options.h"
@@ -88,9 +87,7 @@ std::string to_toml(const SolveArguments& a) {
                                                  {"tolerance", a.tolerance},
                                                  {"max_iterations", a.max_iterations},
                                                  {"densify", a.densify}}}};
-    std::ostringstream text;
-    text << root << "\n";
-    return text.str();
+    return toml_text(root);
 }
 
 std::optional<LoadedMesh> load_input(const std::string& path, const std::string& repair,

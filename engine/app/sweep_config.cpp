@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <sstream>
 
 #include "engine/app/console.h"
 #include "engine/app/solve_options.h"
@@ -68,9 +67,8 @@ class TableReader {
     void read(const char* key, T& value, const char* kind) {
         const toml::node* node = find(key);
         if (node == nullptr) return;
-        const auto found = node->value<T>();
-        if (!found || (std::is_same_v<T, bool> && !node->is_boolean()))
-            complain(*path_, *node, fmt::format("'{}' must be {}", key, kind));
+        const auto found = toml_value<T>(*node);
+        if (!found) complain(*path_, *node, fmt::format("'{}' must be {}", key, kind));
         value = *found;
     }
     std::string text_of(const toml::node& node, const char* key) const {
@@ -85,6 +83,10 @@ class TableReader {
     const toml::table* table_ = nullptr;
     std::vector<std::string> known_;
 };
+
+void require_threads(int threads, const std::string& where) {
+    if (threads < 0 || threads > 4096) throw UsageError(where + "threads must be 0 (all) to 4096");
+}
 
 template <class T>
 T whole_number(const std::string& text, const std::string& what) {
@@ -135,6 +137,7 @@ SweepConfig sweep_config_from_toml(std::string_view text, const std::string& pat
     run("output", c.output);
     run.text("shard", c.shard);
     run("threads", c.threads);
+    require_threads(c.threads, path + ": ");
     run("lanes", c.lanes);
     run.text("max_memory", c.max_memory);
     run("timeout", c.timeout);
@@ -175,9 +178,7 @@ std::string to_toml(const SweepConfig& c, bool only_what_decides_results) {
         run.insert("hang_timeout", c.hang_timeout);
     }
     root.insert("run", run);
-    std::ostringstream text;
-    text << root << "\n";
-    return text.str();
+    return toml_text(root);
 }
 
 SweepOptions sweep_options(const SweepConfig& c) {
@@ -193,7 +194,7 @@ SweepOptions sweep_options(const SweepConfig& c) {
     if (!(c.tolerance > 0.0) || !std::isfinite(c.tolerance)) throw UsageError("tolerance must be positive");
     if (c.max_iterations < 0) throw UsageError("max_iterations must not be negative");
     if (!(c.timeout >= 0.0)) throw UsageError("timeout must not be negative");
-    if (c.threads < 0 || c.threads > 4096) throw UsageError("threads must be 0 (all) to 4096");
+    require_threads(c.threads, "");
     options.tolerance = c.tolerance;
     options.max_iterations = c.max_iterations;
     options.solver = parse_solver(c.solver);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,19 @@ struct SweepItem {
     std::string message;
     double seconds = 0.0;
     ShardItem place{};  // in the whole run
+};
+
+/// Vertices of an item that are asked for.
+struct ChosenVertices {
+    std::int32_t all = 0;           // in the whole run
+    std::uint64_t all_xxh3 = 0;     // digest_of_vertices
+    std::size_t own = 0, left = 0;  // of this machine; of those, still to be solved
+
+    void put_into(SweepItem& item) const {
+        item.vertices = own;
+        item.place.chosen = all;
+        item.place.chosen_xxh3 = all_xxh3;
+    }
 };
 
 /// One line of the table and of the JSON output.

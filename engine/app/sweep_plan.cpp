@@ -199,8 +199,6 @@ std::string digest_of(const std::vector<std::string>& files, const std::vector<I
 }  // namespace
 
 void require_shardable(const SweepConfig& config) {
-    if (config.isolate)
-        throw UsageError("a sweep in shards does not go with --isolate ([run] isolate = true)");
     if (config.component >= 0)
         throw UsageError("a sweep in shards does not go with --component ([input] component)");
     sweep_options(config);
@@ -214,6 +212,11 @@ void require_shardable(const SweepConfig& config) {
 SweepPlan::SweepPlan(std::size_t files, std::size_t resolutions) : inputs_(files), resolutions_(resolutions) {
     std::vector<WorkPart> parts;
     for (std::size_t unit = 0; unit < files * resolutions; ++unit) parts.push_back({unit, 0, kWholeUnit});
+    take_parts(std::move(parts));
+}
+
+SweepPlan::SweepPlan(std::vector<WorkPart> parts, std::size_t resolutions)
+    : inputs_(1), resolutions_(resolutions) {
     take_parts(std::move(parts));
 }
 
@@ -263,6 +266,13 @@ const WorkPart* SweepPlan::part(std::size_t file, std::size_t resolution) const 
     const auto found = std::lower_bound(parts_.begin(), parts_.end(), unit,
                                         [](const WorkPart& part, std::size_t u) { return part.unit < u; });
     return found == parts_.end() || found->unit != unit ? nullptr : &*found;
+}
+
+std::vector<WorkPart> SweepPlan::parts_of(std::size_t file) const {
+    std::vector<WorkPart> parts;
+    for (std::size_t r = 0; r < resolutions_; ++r)
+        if (const WorkPart* known = part(file, r)) parts.push_back({r, known->first, known->last});
+    return parts;
 }
 
 std::string SweepPlan::summary() const {

@@ -18,6 +18,8 @@ class SweepPlan {
   public:
     /// All of it, on this machine alone.
     SweepPlan(std::size_t files, std::size_t resolutions);
+    /// Parts of one file, as parts_of() gives them.
+    SweepPlan(std::vector<WorkPart> parts, std::size_t resolutions);
     /// The shard that the configuration names. Small files count by their size on disk; the largest are
     /// loaded, at most `threads` at a time and within a fixed amount of memory, as many as take a small part
     /// of a shard's time: their components, their topology and so their true work are known then. Throws
@@ -28,6 +30,8 @@ class SweepPlan {
     [[nodiscard]] const std::vector<std::size_t>& files() const { return files_; }
     /// This machine's part of a file at a resolution (a number into the list of them); null: none.
     [[nodiscard]] const WorkPart* part(std::size_t file, std::size_t resolution) const;
+    /// This machine's parts of a file; their units are numbers into the list of resolutions.
+    [[nodiscard]] std::vector<WorkPart> parts_of(std::size_t file) const;
 
     [[nodiscard]] bool sharded() const { return sharded_; }
     [[nodiscard]] Shard shard() const { return shard_; }

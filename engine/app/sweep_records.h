@@ -46,8 +46,7 @@ class SweepRecords {
     /// Stores an item's mesh unless it is there. `item.name` is the name it would like; `stage` says which
     /// component and resolution it is.
     virtual Admission admit(const ItemRecord& item, const SweepStage& stage) = 0;
-    /// So many vertices are asked for, `left` of them to be solved now.
-    virtual void chosen(const std::string& item, std::size_t vertices, std::size_t left) = 0;
+    virtual void chosen(const std::string& item, const ChosenVertices& vertices) = 0;
     virtual void started(const std::string& item, Index vertex) = 0;
     /// Rows of one item; failures of single vertices come by failed().
     virtual void finished(const SweepBlock& block) = 0;
@@ -68,7 +67,7 @@ class StoreRecords final : public SweepRecords {
     void passed(const SweepStage& stage) override;
     /// Throws UsageError when an item of that name and file is stored, but the file has changed since.
     Admission admit(const ItemRecord& item, const SweepStage& stage) override;
-    void chosen(const std::string& /*item*/, std::size_t /*vertices*/, std::size_t /*left*/) override {}
+    void chosen(const std::string& /*item*/, const ChosenVertices& /*vertices*/) override {}
     void started(const std::string& /*item*/, Index /*vertex*/) override {}
     void finished(const SweepBlock& block) override;
     void item_finished(const std::string& item, double seconds) override;

@@ -183,12 +183,12 @@ std::optional<SweepTask> SweepRun::open_surface(const SweepSource& source, const
         if (belongs(k, part)) own.push_back(chosen[k]);
     std::set_difference(own.begin(), own.end(), admission.finished.begin(), admission.finished.end(),
                         std::back_inserter(left));
-    records_->chosen(admission.name, own.size(), left.size());
+    const ChosenVertices choice{static_cast<std::int32_t>(chosen.size()), digest_of_vertices(chosen),
+                                own.size(), left.size()};
+    records_->chosen(admission.name, choice);
     {
         const std::lock_guard lock(mutex_);
-        items_[item].vertices = own.size();
-        items_[item].place.chosen = static_cast<std::int32_t>(chosen.size());
-        items_[item].place.chosen_xxh3 = digest_of_vertices(chosen);
+        choice.put_into(items_[item]);
     }
     return SweepTask{item, std::move(surface), std::move(left)};
 }
@@ -247,30 +247,6 @@ void SweepRun::progress(const SchedulerProgress& progress) {
 std::vector<SweepItem> SweepRun::items() const {
     const std::lock_guard lock(mutex_);
     return items_;
-}
-
-ShardTable SweepRun::shard_table() const {
-    const std::lock_guard lock(mutex_);
-    ShardTable table;
-    table.index = static_cast<std::int32_t>(plan_->shard().index);
-    table.count = static_cast<std::int32_t>(plan_->shard().count);
-    table.inputs = static_cast<std::int32_t>(plan_->inputs());
-    table.resolutions = static_cast<std::int32_t>(plan_->resolutions());
-    table.plan = plan_->digest();
-    SweepConfig whole = config_;
-    whole.shard.clear();
-    whole.output.clear();
-    table.config = to_toml(whole, false);
-    table.fingerprint = to_toml(whole, true);
-    table.keep = keep_;
-    for (const SweepItem& item : items_) {
-        table.items.push_back(item.place);
-        table.items.back().name = item.name;
-        table.items.back().stored = item.stored ? 1 : 0;
-        if (item.status == Status::converged)
-            table.items.back().own = static_cast<std::int32_t>(item.vertices);
-    }
-    return table;
 }
 
 }  // namespace ricci::app

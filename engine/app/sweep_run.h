@@ -36,8 +36,6 @@ class SweepRun final : public SweepSink {
     /// The stage of an item's solves.
     [[nodiscard]] SweepStage stage_of(std::size_t item) const;
     [[nodiscard]] bool any_failure() const { return any_failure_; }
-    /// What the result file says of itself; where the plan is of shards.
-    [[nodiscard]] ShardTable shard_table() const;
 
   private:
     std::optional<SweepTask> open_surface(const SweepSource& source, const LoadedMesh& loaded,

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <sstream>
 #include <stdexcept>
 
 #include "engine/app/console.h"
@@ -80,6 +82,31 @@ toml::table parse_toml(std::string_view text, const std::string& source) {
     } catch (const std::logic_error& e) {
         throw UsageError(fmt::format("{}: is not TOML ({})", source, e.what()));
     }
+}
+
+std::string toml_text(const toml::table& table) {
+    const auto printed = [&](toml::format_flags flags) {
+        std::ostringstream text;
+        text << toml::toml_formatter{table, flags} << "\n";
+        return text.str();
+    };
+    using Formatter = toml::toml_formatter;
+    std::string text = printed(Formatter::default_flags);
+    try {
+        if (toml::parse(text) == table) return text;
+    } catch (const toml::parse_error&) {
+    }
+    // Control characters: a text that begins with a new line loses it in several lines, others are printed
+    // raw.
+    return printed(Formatter::default_flags & ~toml::format_flags::allow_multi_line_strings &
+                   ~toml::format_flags::allow_literal_strings);
+}
+
+std::optional<std::int64_t> whole_toml_number(const toml::node& node) {
+    if (const auto integer = node.value_exact<std::int64_t>()) return integer;
+    const auto number = node.value_exact<double>();
+    if (!number || !(std::abs(*number) <= 0x1p53) || std::trunc(*number) != *number) return std::nullopt;
+    return static_cast<std::int64_t>(*number);
 }
 
 }  // namespace ricci::app

@@ -131,25 +131,29 @@ void check_inputs(const std::map<Place, WholeItem>& items, const ShardTable& tab
         else
             found[place[0]].places.emplace(place[1], place[2]);
     }
-    for (std::int32_t input = 0; input < table.inputs; ++input) {
-        const auto at = found.find(input);
-        if (at == found.end()) {
-            complaints.push_back(fmt::format("input {} is in no shard", input));
-            continue;
-        }
-        const auto& [unreadable, places] = at->second;
+    std::int32_t next = 0;
+    const auto missing = [&](std::int32_t end) {  // in one line: a file may claim any number of inputs
+        if (end - next == 1) complaints.push_back(fmt::format("input {} is in no shard", next));
+        if (end - next > 1)
+            complaints.push_back(fmt::format("inputs {} to {} are in no shard", next, end - 1));
+    };
+    for (const auto& [input, what] : found) {
+        missing(input);
+        next = input + 1;
+        const auto& [unreadable, places] = what;
         const std::string& name = items.lower_bound({input, -1, -1})->second.name;
         if (!unreadable.empty() && !places.empty())
             complaints.push_back(
                 fmt::format("{}: shards {} could not read this input, others could: run those again with "
                             "--retry-failed",
                             name, unreadable));
-        const std::int32_t components = places.empty() ? 0 : places.rbegin()->first + 1;
-        if (places.size() !=
-            static_cast<std::size_t>(components) * static_cast<std::size_t>(table.resolutions))
+        const std::size_t components =
+            places.empty() ? 0 : static_cast<std::size_t>(places.rbegin()->first) + 1;
+        if (places.size() != components * static_cast<std::size_t>(table.resolutions))
             complaints.push_back(
                 fmt::format("{}: a component or resolution of this input is in no shard", name));
     }
+    missing(table.inputs);
 }
 
 /// Checksums of an item's attributes and mesh.

@@ -101,6 +101,8 @@ std::optional<ShardTable> read_shard(hid_t root) {
     table.resolutions = hdf5::read_attribute<std::int32_t>(group, "resolutions");
     if (table.index < 0 || table.index >= table.count)
         throw FileError(fmt::format("/shard: there is no shard {}", shard_name(table.index, table.count)));
+    if (table.inputs < 0 || table.resolutions < 1)
+        throw FileError(fmt::format("/shard: {} inputs at {} resolutions", table.inputs, table.resolutions));
     table.plan = hdf5::read_text_attribute(group, "plan");
     table.config = hdf5::read_text_attribute(group, "config");
     table.fingerprint = hdf5::read_text_attribute(group, "fingerprint");

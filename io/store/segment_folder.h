@@ -41,9 +41,9 @@ class SegmentFolder {
     void start(const JournalHeader& header);
     /// Opens the journal and removes files that it does not name. `accept(path, entry)` takes in a segment
     /// whose bytes match their checksum; those that are missing or have other bytes are dropped with a note
-    /// that describes them by `describe(entry)`. `other(entry)` gets, in order, lines that are no segments,
-    /// and before them the header's processor as if it were one. Throws FileError when nothing can be resumed
-    /// or something cannot be read, std::invalid_argument for another run's.
+    /// that describes them by `describe(entry)`. `other(entry)` gets, in order, lines that are no segments.
+    /// Throws FileError when nothing can be resumed or something cannot be read, std::invalid_argument for
+    /// another run's.
     void resume(const JournalHeader& header,
                 const std::function<void(const std::string& path, const JournalEntry& entry)>& accept,
                 const std::function<void(const JournalEntry& entry)>& other,

@@ -84,9 +84,20 @@ void check_set(const std::vector<Shard>& shards, Complaints& complaints) {
             complaints.push_back(fmt::format("shard {} comes twice: {} and {}", shard.name(),
                                              known->second->path, shard.path));
     }
+    // Runs of numbers: a file may claim to be one of two thousand million.
     const std::int32_t count = shards.front().table.count;
-    for (std::int32_t i = 0; i < count; ++i)
-        if (!by_index.contains(i)) complaints.push_back("missing shard " + shard_name(i, count));
+    std::int32_t next = 0;
+    const auto missing = [&](std::int32_t end) {
+        if (end - next == 1) complaints.push_back("missing shard " + shard_name(next, count));
+        if (end - next > 1)
+            complaints.push_back(
+                fmt::format("missing shards {} to {}", shard_name(next, count), shard_name(end - 1, count)));
+    };
+    for (const auto& [index, shard] : by_index) {
+        missing(index);
+        next = index + 1;
+    }
+    missing(count);
 }
 
 /// Rows of an item in a file; 0 without a sweep.

@@ -105,6 +105,19 @@ TEST(Shards, MergedEqualTheUndividedRun) {
         EXPECT_EQ(item_names(folder / "merged.h5"), names);
         EXPECT_EQ(run_ricci(folder, {"verify", folder / "merged.h5"}).status, 0);
     }
+    // In child processes, some of the shards and all.
+    for (const int isolated : {1, 3}) {
+        Words merge{"merge", "-o", folder / "merged.h5"};
+        for (int i = 0; i < 3; ++i) {
+            fs::remove(shard_file(folder, i, 3));
+            run_shard(folder, i < isolated ? with(sweep, {"--isolate"}) : sweep, i, 3);
+            merge.push_back(shard_file(folder, i, 3));
+        }
+        const ProgramResult merged = run_ricci(folder, merge);
+        ASSERT_EQ(merged.status, 1) << merged.err;
+        EXPECT_EQ(digests(folder / "merged.h5"), expected) << isolated << " of 3 shards isolated";
+        EXPECT_EQ(item_names(folder / "merged.h5"), names);
+    }
     // The joined file is a finished run like any other.
     EXPECT_EQ(read_run(folder / "merged.h5").info.fingerprint,
               read_run(folder / "whole.h5").info.fingerprint);

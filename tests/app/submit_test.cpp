@@ -32,7 +32,7 @@ TEST(Submit, RefusesWhatEveryShardWouldRefuse) {
     const TemporaryFolder folder;
     const std::string mesh = make(folder, "eight", 300), config = folder / "sweep.toml";
     for (const char* text :
-         {"[run]\nisolate = true\n", "[input]\ncomponent = 0\n", "[run]\nmax_memory = \"much\"\n"}) {
+         {"[run]\nthreads = -1\n", "[input]\ncomponent = 0\n", "[run]\nmax_memory = \"much\"\n"}) {
         write_text(config, text);
         for (const Words& words : {Words{"sweep", "--shard", "0/2", "-o", folder / "s.h5"}, Words{}}) {
             Words all = words;

@@ -42,6 +42,27 @@ TEST(TomlText, CountsNoDotsInStringsAndComments) {
     EXPECT_EQ(complaint("a = \"x\"\n" + dots + "b = 1\n"), "c.toml:2: a key has more than 16 parts");
 }
 
+TEST(TomlText, PrintsWhatItReads) {
+    for (const std::string text : {"\nlist", "a\nb", "tab\tand \"quotes\" '", "\r\n\\", "\x7f\x01"}) {
+        const toml::table table{{"a", text}};
+        EXPECT_EQ(*toml_value<std::string>(*parse_toml(toml_text(table), "test").get("a")), text);
+    }
+}
+
+TEST(TomlText, ConvertsOnlyWhatTheTypeHolds) {
+    const toml::table table = parse_toml(
+        "whole = 5.0\nbroken = 5.5\nhuge = -9.2e99\nnone = nan\nlarge = 3000000000\ntext = '5'\nyes = true\n",
+        "test");
+    const auto number = [&](const char* key) { return toml_value<int>(*table.get(key)); };
+    EXPECT_EQ(number("whole"), 5);
+    for (const char* key : {"broken", "huge", "none", "large", "text", "yes"})
+        EXPECT_EQ(number(key), std::nullopt) << key;
+    EXPECT_EQ(toml_value<std::int64_t>(*table.get("large")), 3000000000);
+    EXPECT_EQ(toml_value<double>(*table.get("large")), 3e9);
+    EXPECT_EQ(toml_value<double>(*table.get("yes")), std::nullopt);
+    EXPECT_EQ(toml_value<bool>(*table.get("whole")), std::nullopt);
+}
+
 TEST(TomlText, RefusesWhatIsDeepOrLarge) {
     EXPECT_NE(complaint("a = " + repeated("[", 100'000)).find("c.toml:1: "), std::string::npos);
     EXPECT_NE(complaint("a = " + repeated("{a = ", 100'000)).find("c.toml:1: "), std::string::npos);

@@ -47,7 +47,7 @@ std::string listed(const std::set<Index>& vertices) {
 }  // namespace
 
 IsolatedSweep::IsolatedSweep(const SweepConfig& config, const std::vector<SweepSource>& sources,
-                             StoreRecords& records, ProgressLine& progress)
+                             const SweepPlan& plan, StoreRecords& records, ProgressLine& progress)
     : config_(config),
       keep_(parse_keep(config.keep)),
       records_(&records),
@@ -55,13 +55,15 @@ IsolatedSweep::IsolatedSweep(const SweepConfig& config, const std::vector<SweepS
       resolutions_(parse_resolutions(config.resolutions)) {
     sweep_options(config);  // what is wrong with them is said here, once
     parse_vertices(config.vertices);
-    parse_shard(config.shard);
     parse_repair(config.repair);
-    progress_now_.sources = sources.size();
-    for (const SweepSource& source : sources) {
+    progress_now_.sources = plan.files().size();
+    for (const std::size_t number : plan.files()) {
         sources_.emplace_back();
-        sources_.back().source = source;
-        sources_.back().family = family_of(stem_of(source.file));
+        Source& source = sources_.back();
+        source.source = sources[number];
+        source.input = static_cast<std::int32_t>(number);
+        source.parts = plan.parts_of(number);
+        source.family = family_of(stem_of(source.source.file));
     }
 }
 
@@ -81,7 +83,11 @@ std::optional<std::string> IsolatedSweep::job(std::size_t task, const ChildShare
     source.exception.reset();
     MessageWriter job;
     put_header(job, {"sweep", share});
-    return job.put(source.source.file).put(source.source.name).put(to_toml(config_, false)).bytes();
+    return job.put(source.source.file)
+        .put(source.source.name)
+        .put(to_toml(config_, false))
+        .put(source.parts)
+        .bytes();
 }
 
 void IsolatedSweep::message(std::size_t task, const Frame& frame, const Reply& reply) {
@@ -128,12 +134,23 @@ void IsolatedSweep::message(std::size_t task, const Frame& frame, const Reply& r
     throw ProtocolError(fmt::format("it sent a message of unknown kind {}", frame.kind));
 }
 
-/// The k-th request for a component and resolution is for the k-th place that this resolution has.
+/// The k-th request for a component and resolution is for the k-th place that this resolution has among the
+/// parts.
 IsolatedSweep::Place IsolatedSweep::next_place(Source& source, const SweepStage& stage) {
     int skip = source.asked[{stage.component, stage.resolution}]++;
-    for (std::size_t k = 0; k < resolutions_.size(); ++k)
-        if (resolutions_[k] == stage.resolution && skip-- == 0) return {stage.component, k};
+    for (const WorkPart& part : source.parts)
+        if (resolutions_[part.unit] == stage.resolution && skip-- == 0) return {stage.component, part.unit};
     throw ProtocolError("it works at a resolution that nobody asked for");
+}
+
+/// The item at source.place, under way as `base`.
+SweepItem& IsolatedSweep::item_here(Source& source, const std::string& base) {
+    SweepItem& item = source.items[source.place].item;
+    item.place.base = base;
+    item.place.input = source.input;
+    item.place.component = source.place.first;
+    item.place.resolution = static_cast<std::int32_t>(source.place.second);
+    return item;
 }
 
 IsolatedSweep::Entry& IsolatedSweep::entry_of(Source& source, const std::string& name) {
@@ -145,7 +162,7 @@ IsolatedSweep::Entry& IsolatedSweep::entry_of(Source& source, const std::string&
 void IsolatedSweep::begin(Source& source, const SweepStage& stage, const Reply& reply) {
     if (stage.stage == kResampleStage) {
         source.place = next_place(source, stage);
-        source.items[source.place].item.name = stage.item;
+        item_here(source, stage.item).name = stage.item;
     } else if (stage.stage == kSweepStage) {
         entry_of(source, stage.item);
     } else if (stage.item != source.source.name) {
@@ -164,7 +181,7 @@ void IsolatedSweep::begin(Source& source, const SweepStage& stage, const Reply& 
 void IsolatedSweep::admit(Source& source, const SweepStage& stage, const ItemRecord& item,
                           const Reply& reply) {
     if (stage.resolution == 0) source.place = next_place(source, stage);
-    SweepItem& known = source.items[source.place].item;
+    SweepItem& known = item_here(source, item.name);
     // A child that goes on after the death of another meets the same items again.
     const Admission admission =
         known.stored ? records_->admission_of(known.name) : records_->admit(item, stage);
@@ -175,9 +192,14 @@ void IsolatedSweep::admit(Source& source, const SweepStage& stage, const ItemRec
 
 void IsolatedSweep::chosen(Source& source, MessageReader& reader) {
     Entry& entry = entry_of(source, reader.get_text());
-    entry.item.vertices = reader.get<std::uint64_t>();
+    ChosenVertices vertices;
+    vertices.all = reader.get<std::int32_t>();
+    vertices.all_xxh3 = reader.get<std::uint64_t>();
+    vertices.own = reader.get<std::uint64_t>();
+    vertices.left = reader.get<std::uint64_t>();
+    vertices.put_into(entry.item);
     const std::size_t before = entry.known;
-    entry.known = entry.done + reader.get<std::uint64_t>();
+    entry.known = entry.done + vertices.left;
     progress_now_.solves_known += static_cast<std::int64_t>(entry.known) - static_cast<std::int64_t>(before);
     report();
 }
@@ -188,8 +210,9 @@ void IsolatedSweep::take_over(Source& source, const FailureRecord& failure) {
     if (vertex_of_stage(failure.stage)) return;
     SweepItem* item = nullptr;
     if (failure.stage == kLoadStage) {
-        source.load.emplace().name = source.source.name;
-        item = &*source.load;
+        item = &source.load.emplace();
+        item->name = item->place.base = source.source.name;
+        item->place.input = source.input;
     } else {
         Entry& entry = entry_of(source, failure.item);
         entry.over = true;
@@ -288,10 +311,8 @@ FailureBundle IsolatedSweep::bundle_of(const Source& source) const {
     }
     const VertexChoice choice = parse_vertices(config.vertices);
     std::vector<Index> vertices(source.under_way.begin(), source.under_way.end());
-    if (!vertices.empty())
-        config.shard.clear();  // they are this shard's already
-    else if (choice.kind == VertexChoice::Kind::list)
-        vertices = choice.list;
+    config.shard.clear();  // the plan for one file alone would be another
+    if (vertices.empty() && choice.kind == VertexChoice::Kind::list) vertices = choice.list;
     if (!vertices.empty()) {
         config.vertices = "vertices.txt";
         bundle.files[config.vertices] = fmt::format("{}\n", fmt::join(vertices, "\n"));

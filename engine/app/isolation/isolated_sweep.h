@@ -14,15 +14,16 @@
 #include "engine/app/isolation/sweep_messages.h"
 #include "engine/app/sweep_config.h"
 #include "engine/app/sweep_items.h"
+#include "engine/app/sweep_plan.h"
 #include "engine/app/sweep_records.h"
 
 namespace ricci::app {
 
 class IsolatedSweep final : public IsolatedWork {
   public:
-    /// Throws UsageError.
-    IsolatedSweep(const SweepConfig& config, const std::vector<SweepSource>& sources, StoreRecords& records,
-                  ProgressLine& progress);
+    /// A task for each of the plan's files. Throws UsageError.
+    IsolatedSweep(const SweepConfig& config, const std::vector<SweepSource>& sources, const SweepPlan& plan,
+                  StoreRecords& records, ProgressLine& progress);
 
     bool may_start(std::size_t task) override;
     std::optional<std::string> job(std::size_t task, const ChildShare& share) override;
@@ -45,8 +46,10 @@ class IsolatedSweep final : public IsolatedWork {
     };
     struct Source {
         SweepSource source;
-        std::string family;  // sources of one family may claim the same names
-        bool named = false;  // all its items have names
+        std::int32_t input = 0;       // its number in the whole run
+        std::vector<WorkPart> parts;  // of it; their units are resolutions
+        std::string family;           // sources of one family may claim the same names
+        bool named = false;           // all its items have names
         std::map<Place, Entry> items;
         std::optional<SweepItem> load;  // where it gave no items
         int unexplained = 0;            // deaths between items
@@ -64,6 +67,7 @@ class IsolatedSweep final : public IsolatedWork {
 
     Place next_place(Source& source, const SweepStage& stage);
     static bool between_items(const Source& source);
+    SweepItem& item_here(Source& source, const std::string& base);
     static Entry& entry_of(Source& source, const std::string& name);
     void begin(Source& source, const SweepStage& stage, const Reply& reply);
     void admit(Source& source, const SweepStage& stage, const ItemRecord& item, const Reply& reply);

@@ -37,11 +37,13 @@ class PipeRecords final : public SweepRecords {
         admission.finished = reader.get_vector<Index>();
         return admission;
     }
-    void chosen(const std::string& item, std::size_t vertices, std::size_t left) override {
+    void chosen(const std::string& item, const ChosenVertices& vertices) override {
         send(SweepMessage::chosen, MessageWriter()
                                        .put(item)
-                                       .put(static_cast<std::uint64_t>(vertices))
-                                       .put(static_cast<std::uint64_t>(left)));
+                                       .put(vertices.all)
+                                       .put(vertices.all_xxh3)
+                                       .put(static_cast<std::uint64_t>(vertices.own))
+                                       .put(static_cast<std::uint64_t>(vertices.left)));
     }
     void started(const std::string& item, Index vertex) override {
         send(SweepMessage::started, MessageWriter().put(item).put(vertex));
@@ -99,10 +101,11 @@ class PipeRecords final : public SweepRecords {
 void sweep_in_child(ParentChannel& parent, const ChildShare& share, MessageReader& job) {
     const SweepSource source{job.get_text(), job.get_text()};
     const SweepConfig config = sweep_config_from_toml(job.get_text(), "configuration");
+    const auto parts = job.get_vector<WorkPart>();
     job.end();
     PipeRecords records(parent, share, parse_keep(config.keep));
     ProgressLine progress(true);
-    const SweepPlan plan(1, parse_resolutions(config.resolutions).size());
+    const SweepPlan plan(parts, parse_resolutions(config.resolutions).size());
     SweepRun run(config, {source}, plan, records, progress);
     std::vector<SweepTask> tasks = run.open(0);
     parent.send(static_cast<std::uint32_t>(SweepMessage::opened), {});

@@ -14,7 +14,7 @@ enum class SweepMessage : std::uint32_t {
     begin = static_cast<std::uint32_t>(PoolMessage::first_own),  // stage; answered: u1, failure
     passed,                                                      // stage
     admit,          // stage, item; answered: name, finished vertices
-    chosen,         // item, u8, u8
+    chosen,         // item, i4, u8, u8, u8
     opened,         // every item of the file is known
     started,        // item, vertex
     finished,       // block
