@@ -265,7 +265,7 @@ void add_sweep_options(CLI::App* command, SweepArguments* a) {
         ->check(CLI::PositiveNumber);
     command
         ->add_option("--max-iterations", v.max_iterations,
-                     "Steps of a solve; 0: 200, in lanes 60 and then Newton's method")
+                     "Steps of a solve; 0: 500, in lanes 60 and then Newton's method")
         ->check(CLI::NonNegativeNumber);
     command->add_flag("--densify", v.densify,
                       "Refine around each cone and raise its valence (circle packings)");

@@ -51,7 +51,7 @@ void add_index_options(CLI::App& command, IndexConfig& c) {
     command.add_option("--tolerance", c.tolerance, "On max |K - target|, radians")
         ->capture_default_str()
         ->check(CLI::PositiveNumber);
-    command.add_option("--max-iterations", c.max_iterations, "0: 200 Newton steps")
+    command.add_option("--max-iterations", c.max_iterations, "0: 500 Newton steps")
         ->check(CLI::NonNegativeNumber);
     command.add_option("--repair", c.repair, "Changes to make: orient,weld,drop-degenerate");
     command.add_option("--timeout", c.timeout, "Seconds per shape; 0: none")->check(CLI::NonNegativeNumber);

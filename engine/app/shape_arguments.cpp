@@ -16,7 +16,7 @@ void add_shape_arguments(CLI::App& command, SolveArguments& a, std::vector<std::
     command.add_option("--tolerance", a.tolerance, "On max |K|, radians; 1e-12 is tried first")
         ->capture_default_str()
         ->check(CLI::PositiveNumber);
-    command.add_option("--max-iterations", a.max_iterations, "0: 200")->check(CLI::NonNegativeNumber);
+    command.add_option("--max-iterations", a.max_iterations, "0: 500")->check(CLI::NonNegativeNumber);
     command.add_option("--delaunay", a.delaunay, "isometric, or none: start from the input triangulation")
         ->capture_default_str();
     command.add_option("--repair", a.repair, "Changes to make: orient,weld,drop-degenerate");

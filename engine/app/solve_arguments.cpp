@@ -32,7 +32,7 @@ void add_solve_arguments(CLI::App& command, SolveArguments& a) {
         .add_option("--precision", a.precision,
                     "auto (double, and 19 or 50 digits where its rounding is too coarse), double, extended")
         ->capture_default_str();
-    command.add_option("--max-iterations", a.max_iterations, "0: 200 Newton steps, 100000 gradient steps")
+    command.add_option("--max-iterations", a.max_iterations, "0: 500 Newton steps, 100000 gradient steps")
         ->check(CLI::NonNegativeNumber);
     command.add_option("--target", a.target,
                        "flat, uniform, boundary, or a file with one curvature per line (radians)");

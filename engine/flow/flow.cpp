@@ -27,7 +27,7 @@ SolveOptions solve_options(const FlowOptions& options, Geometry geometry) {
     SolveOptions result;
     result.tolerance = options.tolerance;
     result.max_iterations = options.max_iterations > 0 ? options.max_iterations
-                                                       : (options.method == Method::newton ? 200 : 100000);
+                                                       : (options.method == Method::newton ? 500 : 100000);
     result.convex = geometry != Geometry::spherical && options.scheme != Scheme::virtual_radius;
     result.interrupted = options.interrupted;
     result.progress = options.progress;

@@ -47,7 +47,7 @@ struct FlowOptions {
     /// More digits are asked for where the rounding of lengths may change the residual by more. 0: a tenth of
     /// the tolerance.
     double tolerated_rounding = 0.0;
-    std::int32_t max_iterations = 0;  // 0: 200 (Newton), 100000 (gradient)
+    std::int32_t max_iterations = 0;  // 0: 500 (Newton), 100000 (gradient)
     bool parallel = true;             // faces in parallel
     std::function<std::optional<Status>()> interrupted;
     std::function<void(const IterationLog&)> progress;

@@ -158,7 +158,7 @@ SweepSolve SweepWorker::solve(Index vertex, const std::function<std::optional<St
     result.area_distortion = std::numeric_limits<double>::quiet_NaN();
     SolveOptions options;
     options.tolerance = shared_->options_.tolerance;
-    options.max_iterations = shared_->options_.max_iterations > 0 ? shared_->options_.max_iterations : 200;
+    options.max_iterations = shared_->options_.max_iterations > 0 ? shared_->options_.max_iterations : 500;
     options.convex = shared_->options_.scheme != Scheme::virtual_radius;
     options.interrupted = interrupted;
     target_.curvature[at(vertex)] += shared_->cone_curvature_;

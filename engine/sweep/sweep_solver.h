@@ -28,7 +28,7 @@ struct SweepOptions {
     bool delaunay = true;
     bool densify = false;  // circle packings: refine around the cone and raise its valence first
     double tolerance = 1e-10;
-    std::int32_t max_iterations = 0;             // 0: 200
+    std::int32_t max_iterations = 0;             // 0: 500
     Precision precision = Precision::automatic;  // of Newton's method, by vertex scaling; extended: no lanes
     SweepSolverKind solver = SweepSolverKind::lanes;
     int lanes = kLanes;  // vertices at a time, 1 … kLanes; the bits do not depend on it
