@@ -159,7 +159,7 @@ void set_text(TreeValues& values, std::size_t position, std::uint8_t choice) {
             text = "../\xff\x1b[2J";
             break;
         case 3:
-            text.pop_back();
+            if (!text.empty()) text.pop_back();
             break;
         case 4:
             text += text;
