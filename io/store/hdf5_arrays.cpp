@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "io/store/hdf5_file.h"
 
@@ -40,12 +41,14 @@ Shape chunk_of(const Shape& shape, hsize_t value_bytes) {
     return chunk;
 }
 
+thread_local bool plain_datasets = false;
+
 Handle make_dataset(hid_t parent, const std::string& name, hid_t type, const Shape& shape) {
     const std::string what = "cannot create dataset " + name;
     const Handle creation(H5Pcreate(H5P_DATASET_CREATE), what);
     check(H5Pset_obj_track_times(creation, false), what);
     const hsize_t value_bytes = H5Tget_size(type);
-    if (count_of(shape) * value_bytes > kContiguousBytes) {
+    if (!plain_datasets && count_of(shape) * value_bytes > kContiguousBytes) {
         const Shape chunk = chunk_of(shape, value_bytes);
         check(H5Pset_chunk(creation, static_cast<int>(chunk.size()), chunk.data()), what);
         check(H5Pset_shuffle(creation), what);
@@ -255,6 +258,12 @@ std::uint64_t Input::digest() const {
         XXH3_64bits_update(state.get(), buffer.data(), buffer.size());
     }
     return XXH3_64bits_digest(state.get());
+}
+
+PlainDatasets::PlainDatasets() : before_(std::exchange(plain_datasets, true)) {}
+
+PlainDatasets::~PlainDatasets() {
+    plain_datasets = before_;
 }
 
 std::vector<std::string> checksum_complaints(hid_t object, const std::string& name) {

@@ -205,6 +205,19 @@ T read_scalar(hid_t parent, const std::string& name) {
     return read_array<T>(parent, name, Shape{}).front();
 }
 
+/// While it lives, datasets that this thread creates are neither packed nor cut in chunks: for files that are
+/// read once more and then removed.
+class PlainDatasets {
+  public:
+    PlainDatasets();
+    ~PlainDatasets();
+    PlainDatasets(const PlainDatasets&) = delete;
+    PlainDatasets& operator=(const PlainDatasets&) = delete;
+
+  private:
+    bool before_;
+};
+
 /// Compares every checksum below `object` (datasets' and groups') with the contents; one complaint per
 /// mismatch.
 std::vector<std::string> checksum_complaints(hid_t object, const std::string& name);

@@ -135,6 +135,7 @@ void SegmentFolder::write_segment(
     const std::string path = folder_ + "/" + entry.name;
     const std::string temporary = path + ".tmp";
     const hdf5::Session session;
+    const hdf5::PlainDatasets plain;  // packing costs more than it saves for the life of a segment
     try {
         hdf5::write_file(temporary, [&](hdf5::OutputFile& file) {
             fill(file.root());
