@@ -37,7 +37,7 @@ sighandler_t __sysv_signal(int number, sighandler_t handler) noexcept {
 void gk_errexit(int number, const char* format, ...) {
     va_list values;
     va_start(values, format);
-    std::vfprintf(stderr, format, values);
+    std::vfprintf(stderr, format, values);  // NOLINT(clang-analyzer-valist.Uninitialized): false
     va_end(values);
     std::fputc('\n', stderr);
     ricci::note_ordering_failure();

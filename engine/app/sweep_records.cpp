@@ -34,7 +34,7 @@ std::optional<Index> vertex_of_stage(const std::string& stage) {
 
 std::optional<FailureRecord> StoreRecords::begin(const SweepStage& stage) {
     if (store_ == nullptr) return std::nullopt;
-    const auto known = store_->failure_of(stage.item, stage.stage);
+    auto known = store_->failure_of(stage.item, stage.stage);
     if (!known || !costly(known->status)) return std::nullopt;
     {
         const std::lock_guard lock(mutex_);

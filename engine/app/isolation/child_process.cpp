@@ -75,6 +75,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& arguments) {
     std::vector<std::string> words{own_program()};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> pointers;
+    pointers.reserve(words.size() + 1);
     for (std::string& word : words) pointers.push_back(word.data());
     pointers.push_back(nullptr);
     std::array<int, 2> sockets{}, pipes{};
