@@ -41,7 +41,9 @@ CircularArc poincare_geodesic(const PlanePoint& z1, const PlanePoint& z2) {
     // Im(conj(z1) z2) from differences, so that close points lose no digits. The geodesic bends towards the
     // origin: where that lies to the left, the path turns right.
     const double twice_area = z1[0] * dy - z1[1] * dx;
-    return {z1, z2, -2.0 * twice_area / (chord * inverse_distance)};
+    // At most half a circle; rounding of points next to the edge of the disk, and next to each other, may say
+    // more.
+    return {z1, z2, std::clamp(-2.0 * twice_area / inverse_distance, -2.0, 2.0) / chord};
 }
 
 }  // namespace ricci

@@ -33,7 +33,7 @@ SvgPath& SvgPath::arc_to(const PlanePoint& point, double curvature) {
     // The middle of a half circle moves by the root of a rounding of its radius; that of a quarter by less
     // than the rounding.
     if (std::abs(curvature) * chord > kMaximalTurn)
-        return arc_to(point_on(arc, 0.5), curvature).arc_to(point, curvature);
+        commands_.push_back({Verb::arc, point_on(arc, 0.5), curvature});  // halves turn by less
     commands_.push_back({Verb::arc, point, curvature});
     return *this;
 }

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "io/picture/circular_arc.h"
+#include "io/picture/svg.h"
 
 namespace ricci {
 namespace {
@@ -83,6 +84,30 @@ TEST(PictureArc, CurvatureOfClosePointsAndNextToDiameters) {
         const auto straight = static_cast<double>(reference_curvature(z1, opposite));
         EXPECT_NEAR(poincare_geodesic(z1, opposite).curvature, straight, 1e-15) << digits;
     }
+}
+
+// Points at the edge of the disk and so near to one another that nothing but rounding tells them apart: the
+// arc is at most half a circle, and a path takes it in two parts at most.
+TEST(PictureArc, NeighboursAtTheEdgeOfTheDisk) {
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    int capped = 0;
+    for (int k = 0; k < 20000; ++k) {
+        const double angle = 6.0 * uniform(random), step = std::pow(10.0, -6.0 - 12.0 * uniform(random));
+        const auto ideal = [&](double phi) {
+            const double radius = 1.0 - std::pow(10.0, -8.0 - 9.0 * uniform(random));
+            return PlanePoint{radius * std::cos(phi), radius * std::sin(phi)};
+        };
+        const CircularArc arc = poincare_geodesic(ideal(angle), ideal(angle + step));
+        const double turn =
+            std::abs(arc.curvature) * std::hypot(arc.to[0] - arc.from[0], arc.to[1] - arc.from[1]);
+        ASSERT_LE(turn, 2.0 + 1e-12);
+        capped += turn > 1.999999 ? 1 : 0;
+        SvgPicture picture(100, 100, {-1, -1, 2, 2});
+        picture.path(SvgPath().arc(arc), stroked(kBlack));
+        ASSERT_LT(picture.document().size(), 600U);
+    }
+    EXPECT_GT(capped, 0);  // the case is among them
 }
 
 TEST(PictureArc, PointsLieEvenlyOnTheCircle) {
