@@ -209,10 +209,34 @@ std::string SvgPicture::document() const {
         "width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" font-family=\"sans-serif\" "
         "stroke-linejoin=\"round\" stroke-linecap=\"round\">\n",
         width, height);
-    if (!title_.empty()) text += fmt::format("<title>{}</title>\n", xml_text(title_));
+    return text + contents() + "</svg>\n";
+}
+
+std::string SvgPicture::contents() const {
+    std::string text = title_.empty() ? "" : fmt::format("<title>{}</title>\n", xml_text(title_));
     text += "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n" + body_;
     for (int i = 0; i < open_groups_; ++i) text += "</g>\n";
-    return text + "</svg>\n";
+    return text;
+}
+
+std::string SvgPicture::embedded(const std::string& prefix) const {
+    const std::string width = svg_number(width_), height = svg_number(height_);
+    std::string inner = contents();
+    for (int clip = clips_; clip > 0; --clip)
+        for (const char* const form : {"id=\"clip{}\"", "url(#clip{})"}) {
+            const std::string from = fmt::format(fmt::runtime(form), clip);
+            std::string to = from;
+            to.replace(to.find("clip"), 0, prefix);
+            for (std::size_t at = inner.find(from); at != std::string::npos;
+                 at = inner.find(from, at + to.size()))
+                inner.replace(at, from.size(), to);
+        }
+    return fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" viewBox=\"0 0 {0} {1}\" "
+        "style=\"max-width:{0}px\" "
+        "font-family=\"sans-serif\" stroke-linejoin=\"round\" stroke-linecap=\"round\" data-scale=\"{2}\" "
+        "data-left=\"{3}\" data-top=\"{4}\">\n{5}</svg>\n",
+        width, height, scale_, left_, top_, inner);
 }
 
 void SvgPicture::save(const std::string& path) const {

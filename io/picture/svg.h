@@ -108,6 +108,10 @@ class SvgPicture {
 
     /// The whole file; open groups are closed.
     [[nodiscard]] std::string document() const;
+    /// The same as an element inside an HTML page, as wide as its place allows but no wider than the picture.
+    /// Names within the page start with `prefix`. The attributes data-scale, data-left and data-top lead from
+    /// pixels to user units: x = left + px / scale, y = top - py / scale.
+    [[nodiscard]] std::string embedded(const std::string& prefix) const;
     /// Writes the file under a temporary name, fsyncs and renames it. Throws FileError.
     void save(const std::string& path) const;
 
@@ -118,6 +122,7 @@ class SvgPicture {
     void append_arc(std::string& data, const Pixel& from, const Pixel& to, double curvature) const;
     void element(const std::string& start, const Paint& paint, const std::string& title);
     void open_group(const std::string& name, const std::string& attributes);
+    [[nodiscard]] std::string contents() const;
 
     double width_, height_, scale_ = 1.0, left_ = 0.0, top_ = 0.0;
     std::string title_, body_;

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "io/store/csv_text.h"
 #include "io/store/durable.h"
+#include "io/store/schema.h"
 #include "io/store/whole_file.h"
 
 namespace ricci {
@@ -26,7 +29,50 @@ void write_record(hid_t parent, const DistanceRecord& record) {
     hdf5::write_array(group, "cluster", record.cluster);
 }
 
+void require(bool holds, hid_t group, const char* what) {
+    if (!holds) throw FileError(hdf5::name_of(group) + ": " + what);
+}
+
+bool all_below(const std::vector<std::int32_t>& values, std::size_t limit) {
+    return std::all_of(values.begin(), values.end(),
+                       [&](std::int32_t v) { return v >= 0 && static_cast<std::size_t>(v) < limit; });
+}
+
+DistanceRecord read_record(hid_t parent, const std::string& type) {
+    const Handle group = hdf5::open_group(parent, type);
+    DistanceRecord record;
+    record.type = type;
+    record.metric = hdf5::read_text_attribute(group, "metric");
+    record.linkage = hdf5::read_text_attribute(group, "linkage");
+    record.shapes = hdf5::read_text_list(group, "shape");
+    const hsize_t count = record.shapes.size(), merges = count > 0 ? count - 1 : 0;
+    record.distances = hdf5::read_array<double>(group, "distance", hdf5::Shape{count, count});
+    record.merge_first = hdf5::read_array<std::int32_t>(group, "merge_first", hdf5::Shape{merges});
+    record.merge_second = hdf5::read_array<std::int32_t>(group, "merge_second", hdf5::Shape{merges});
+    record.merge_height = hdf5::read_array<double>(group, "merge_height", hdf5::Shape{merges});
+    record.leaf_order = hdf5::read_array<std::int32_t>(group, "leaf_order", hdf5::Shape{count});
+    record.cluster = hdf5::read_array<std::int32_t>(group, "cluster", hdf5::Shape{count});
+    require(all_below(record.leaf_order, count) && all_below(record.cluster, std::max<hsize_t>(count, 1)),
+            group, "leaf_order or cluster names what is not there");
+    for (std::size_t k = 0; k < merges; ++k)
+        require(all_below({record.merge_first[k], record.merge_second[k]}, count + k), group,
+                "a merge joins what is not there yet");
+    return record;
+}
+
 }  // namespace
+
+DistanceFile read_distance_file(const std::string& path) {
+    const hdf5::Session session;
+    DistanceFile file;
+    schema::read_whole_file(path, "distances", [&](hid_t root) {
+        file.info = schema::read_run_info(root);
+        const Handle group = hdf5::open_group(root, "distances");
+        for (const std::string& type : hdf5::link_names(group))
+            file.records.push_back(read_record(group, type));
+    });
+    return file;
+}
 
 void write_distance_file(const std::string& path, const RunInfo& info,
                          const std::vector<DistanceRecord>& records) {

@@ -24,6 +24,13 @@ struct DistanceRecord {
 void write_distance_file(const std::string& path, const RunInfo& info,
                          const std::vector<DistanceRecord>& records);
 
+/// The same read back. Throws FileError on anything that does not keep the contract, naming the object.
+struct DistanceFile {
+    RunInfo info;
+    std::vector<DistanceRecord> records;  // ascending by type
+};
+DistanceFile read_distance_file(const std::string& path);
+
 /// The matrix with names in the first row and column; quotes as in RFC 4180, shortest round-trip decimals.
 /// Throws FileError.
 void write_distance_csv(const std::string& path, const DistanceRecord& record);

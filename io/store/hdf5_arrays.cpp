@@ -161,6 +161,15 @@ std::vector<std::string> read_texts(const Input& input, hid_t type, std::size_t 
     return texts;
 }
 
+std::vector<std::string> read_text_list(hid_t parent, const std::string& name,
+                                        std::optional<std::size_t> size) {
+    const Input input(parent, name);
+    const Handle text = text_type();
+    input.expect_type(text);
+    input.expect_shape({size.value_or(input.size())});
+    return read_texts(input, text, 1);
+}
+
 RowWriter::RowWriter(hid_t parent, const std::string& name, hsize_t rows, hsize_t columns)
     : dataset_(make_dataset(parent, name, stored_type<double>(), {rows, columns})),
       space_(H5Dget_space(dataset_), name),

@@ -189,6 +189,9 @@ void write_texts(hid_t parent, const std::string& name, hid_t type, const Shape&
 void write_text_list(hid_t parent, const std::string& name, const std::vector<std::string>& texts,
                      const std::optional<Shape>& shape = std::nullopt);
 std::vector<std::string> read_texts(const Input& input, hid_t type, std::size_t members);
+/// A list of so many texts, or of any number. Throws FileError.
+std::vector<std::string> read_text_list(hid_t parent, const std::string& name,
+                                        std::optional<std::size_t> size = std::nullopt);
 
 /// An array of numbers with exactly this shape, or (`std::nullopt`) any one-dimensional one.
 template <class T>

@@ -6,6 +6,7 @@
 
 #include "io/store/csv_text.h"
 #include "io/store/durable.h"
+#include "io/store/schema.h"
 #include "io/store/whole_file.h"
 
 namespace ricci {
@@ -52,7 +53,54 @@ std::string csv_row(std::size_t sequence, std::size_t i, const PathRecord& r,
     return row + "," + csv_field(r.message[i]) + "\n";
 }
 
+std::vector<double> read_matrix(hid_t group, const char* name, hsize_t rows) {
+    const hdf5::Input input(group, name);
+    input.expect_type(hdf5::stored_type<double>());
+    if (input.shape().size() != 2 || input.shape()[0] != rows)
+        throw FileError(fmt::format("{} is not a matrix of {} rows", input.name(), rows));
+    std::vector<double> values(input.size());
+    input.read_into(hdf5::stored_type<double>(), values.data());
+    return values;
+}
+
+PathRecord read_record(hid_t parent, const std::string& name) {
+    const Handle group = hdf5::open_group(parent, name);
+    PathRecord record;
+    record.type = hdf5::read_text_attribute(group, "type");
+    record.names = hdf5::read_text_list(group, "name");
+    record.files = hdf5::read_text_list(group, "file");
+    const hsize_t frames = record.files.size();
+    const hdf5::Shape each{frames};
+    record.marking = hdf5::read_text_list(group, "marking", frames);
+    record.message = hdf5::read_text_list(group, "message", frames);
+    record.status = hdf5::read_array<std::uint8_t>(group, "status", each);
+    record.marking_number = hdf5::read_array<std::int32_t>(group, "marking_number", each);
+    record.coordinates = read_matrix(group, "coordinates", frames);
+    if (record.coordinates.size() != frames * record.names.size())
+        throw FileError(hdf5::name_of(group) + ": not one coordinate for each name");
+    record.fingerprint = read_matrix(group, "fingerprint", frames);
+    record.step = hdf5::read_array<double>(group, "step", each);
+    record.free_step = hdf5::read_array<double>(group, "free_step", each);
+    record.length = hdf5::read_array<double>(group, "length", each);
+    record.marking_gap = hdf5::read_array<double>(group, "marking_gap", each);
+    record.marking_spread = hdf5::read_array<double>(group, "marking_spread", each);
+    return record;
+}
+
 }  // namespace
+
+PathFile read_path_file(const std::string& path) {
+    const hdf5::Session session;
+    PathFile file;
+    schema::read_whole_file(path, "paths", [&](hid_t root) {
+        file.info = schema::read_run_info(root);
+        const Handle group = hdf5::open_group(root, "paths");
+        const std::size_t sequences = hdf5::link_names(group).size();
+        for (std::size_t k = 1; k <= sequences; ++k)
+            file.records.push_back(read_record(group, fmt::format("{}", k)));
+    });
+    return file;
+}
 
 void write_path_file(const std::string& path, const RunInfo& info, const std::vector<PathRecord>& records) {
     schema::write_whole_file(path, info, "paths", [&](hid_t root) {

@@ -26,6 +26,13 @@ struct PathRecord {
 /// Written under a temporary name, fsynced and renamed. Throws FileError.
 void write_path_file(const std::string& path, const RunInfo& info, const std::vector<PathRecord>& records);
 
+/// The same read back. Throws FileError on anything that does not keep the contract, naming the object.
+struct PathFile {
+    RunInfo info;
+    std::vector<PathRecord> records;
+};
+PathFile read_path_file(const std::string& path);
+
 /// One row per frame of all sequences, which have the same coordinates; `status_names`: as in RunInfo. What
 /// is NaN stays empty. Quotes as in RFC 4180, shortest round-trip decimals. Throws FileError.
 void write_path_csv(const std::string& path, const StatusNames& status_names,

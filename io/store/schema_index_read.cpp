@@ -18,14 +18,6 @@ using Type = std::array<Index, 2>;
 
 constexpr const char* kBuckets = "buckets";
 
-std::vector<std::string> read_text_column(hid_t group, const char* name, std::optional<std::size_t> size) {
-    const hdf5::Input input(group, name);
-    const Handle text = hdf5::text_type();
-    input.expect_type(text);
-    input.expect_shape({size.value_or(input.size())});
-    return hdf5::read_texts(input, text, 1);
-}
-
 // A matrix with so many rows; its columns tell `width`.
 std::vector<double> read_matrix(hid_t group, const char* name, std::size_t rows, std::size_t& width) {
     const hdf5::Input input(group, name);
@@ -117,7 +109,7 @@ void read_details(hid_t group, const IndexBucket& bucket, const StatusNames& sta
     states.expect_shape({count});
     std::vector<std::uint8_t> values(count);
     states.read_into(type, values.data());
-    const std::vector<std::string> messages = read_text_column(group, "message", count);
+    const std::vector<std::string> messages = hdf5::read_text_list(group, "message", count);
     const std::vector<double> seconds = hdf5::read_array<double>(group, "seconds", Shape{count, 4});
     for (std::size_t i = 0; i < count; ++i) {
         ShapeRecord& shape = entries[i].shape;
@@ -181,7 +173,7 @@ IndexBucket read_bucket(hid_t root, Index genus, Index boundaries) {
     IndexBucket bucket;
     bucket.genus = genus;
     bucket.boundaries = boundaries;
-    bucket.files = read_text_column(group, "file", std::nullopt);
+    bucket.files = hdf5::read_text_list(group, "file", std::nullopt);
     const std::size_t count = bucket.files.size();
     bucket.component = hdf5::read_array<std::int32_t>(group, "component", Shape{count});
     bucket.components = hdf5::read_array<std::int32_t>(group, "components", Shape{count});

@@ -3,7 +3,9 @@
 #include <unistd.h>
 
 #include "io/store/durable.h"
+#include "io/store/foreign_file.h"
 #include "io/store/schema.h"
+#include "io/store/schema_index.h"
 #include "io/store/verify_file.h"
 
 namespace ricci::schema {
@@ -28,6 +30,20 @@ void write_whole_file(const std::string& path, const RunInfo& info, const std::s
     } catch (...) {
         ::unlink(temporary.c_str());
         throw;
+    }
+}
+
+void read_whole_file(const std::string& path, const std::string& kind,
+                     const std::function<void(hid_t)>& read) {
+    try {
+        const hdf5::Handle file = hdf5::open_foreign(path);
+        if (read_kind(file) != kind)
+            throw FileError("holds no " + kind +
+                            (read_kind(file).empty() ? ", but results" : ", but " + read_kind(file)));
+        read(file);
+    } catch (const FileError& error) {
+        const std::string what = error.what();
+        throw FileError(what.starts_with(path) ? what : path + ": " + what);
     }
 }
 

@@ -14,4 +14,9 @@ namespace ricci::schema {
 void write_whole_file(const std::string& path, const RunInfo& info, const std::string& kind,
                       const std::function<void(hid_t)>& fill);
 
+/// Opens a file of that kind, once a child process has walked over it (io/store/foreign_file.h), for
+/// read(root). Throws FileError that begins with the path. The caller holds a Session.
+void read_whole_file(const std::string& path, const std::string& kind,
+                     const std::function<void(hid_t)>& read);
+
 }  // namespace ricci::schema
