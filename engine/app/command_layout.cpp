@@ -65,17 +65,13 @@ std::string component_file(const std::string& path, std::size_t component, bool 
 
 void write_picture(const LayoutArguments& a, const std::string& file, const SurfaceMesh& mesh,
                    const SurfaceStructure& s, const std::optional<ConformalityReport>& quality) {
-    StoredLayout stored;
-    stored.refinement = *s.refinement;
-    stored.layout = s.layout;
-    stored.cut = s.cut;
+    StoredLayout stored = stored_layout_of(mesh, s);
     const PictureKind kind = parse_picture_kind(a.picture);
     if (kind == PictureKind::tessellation) stored.copies = copies_of(a, s);
     PictureSource source;
     source.layout = &stored;
     source.mesh = &mesh;
-    for (const GroupGenerator& g : s.group.generators)
-        source.generators.push_back(vertices_of(mesh.connectivity, s.basis->walk(g.word)));
+    source.generators = stored.generators;
     if (quality) take_quality(*quality, source);
     draw_picture(kind, parse_layout_model(a.model), source).save(file);
 }

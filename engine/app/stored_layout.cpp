@@ -180,6 +180,16 @@ StoredLayout read_layout_group(const ResultGroup& group, std::size_t faces) {
     return stored;
 }
 
+StoredLayout stored_layout_of(const SurfaceMesh& mesh, const SurfaceStructure& s) {
+    StoredLayout stored;
+    stored.refinement = *s.refinement;
+    stored.layout = s.layout;
+    stored.cut = s.cut;
+    for (const GroupGenerator& g : s.group.generators)
+        stored.generators.push_back(vertices_of(mesh.connectivity, s.basis->walk(g.word)));
+    return stored;
+}
+
 LayoutModel parse_layout_model(const std::string& text) {
     if (text == "auto" || text == "poincare" || text == "plane" || text == "disk" || text == "sphere")
         return LayoutModel::conformal;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/layout/surface_layout.h"
+#include "engine/structure/surface_structure.h"
 #include "io/mesh/save_textured.h"
 #include "io/store/result_group.h"
 
@@ -27,6 +27,8 @@ struct StoredLayout {
     std::vector<std::vector<Index>> generators;  // closed vertex paths on the mesh
 };
 StoredLayout read_layout_group(const ResultGroup& group, std::size_t faces);
+/// The same of a structure of this mesh that has not been stored; without copies.
+StoredLayout stored_layout_of(const SurfaceMesh& mesh, const SurfaceStructure& structure);
 
 /// The refined input with layout coordinates as texture coordinates: convex pieces, the input's vertices
 /// first. Disk models are moved from [-1, 1] to [0, 1]. Throws UsageError for an intrinsic surface.

@@ -9,7 +9,7 @@
 #include "engine/app/console.h"
 #include "engine/app/records.h"
 #include "engine/app/solve_options.h"
-#include "engine/app/toml_text.h"
+#include "engine/app/stored_settings.h"
 #include "engine/flow/target.h"
 #include "engine/sweep/sweep_solver.h"
 #include "engine/verify/recompute.h"
@@ -26,24 +26,6 @@ double residual_slack(int precision_digits, double tolerance) {
     return precision_digits > 16 ? std::max(2e-11, 0.1 * tolerance) : kResidualSlack;
 }
 constexpr double kDistortionSlack = 1e-9;  // relative
-
-/// How the sweep was solved, from the stored configuration.
-SweepOptions options_of(const StoredRun& run) {
-    SweepOptions options;
-    const toml::table root = parse_toml(run.info.config, "the stored configuration");
-    const auto text = [&](const char* key, const std::string& fallback) {
-        return root["solve"][key].value_or(fallback);
-    };
-    options.scheme = parse_scheme(text("scheme", "vertex-scaling"));
-    const std::string boundary = text("boundary", "geodesic");
-    options.boundary = parse_boundary(boundary.empty() ? "geodesic" : boundary);
-    options.delaunay = parse_delaunay(text("delaunay", "isometric"));
-    options.densify = root["solve"]["densify"].value_or(false);
-    options.tolerance = root["solve"]["tolerance"].value_or(options.tolerance);
-    const std::string cone = text("cone_curvature", "");
-    if (!cone.empty()) options.cone_curvature = parse_curvature(cone);
-    return options;
-}
 
 /// In more digits where the solve took more.
 int recomputed_digits(int precision_digits) {
@@ -103,7 +85,7 @@ void judge(const Recomputed& r, double slack, RecomputedSolution& s) {
     s.sound = s.message.empty();
 }
 
-RecomputedSolution check_kept(const StoredItem& item, const KeptFactor& kept, const SweepOptions& options) {
+RecomputedSolution check_kept(const StoredItem& item, const KeptFactor& kept, const StoredSettings& options) {
     int precision_digits = 0;
     RecomputedSolution s;
     const StoredSweep& sweep = *item.sweep;
@@ -134,7 +116,7 @@ RecomputedSolution check_kept(const StoredItem& item, const KeptFactor& kept, co
     return s;
 }
 
-RecomputedSolution check_flow(const StoredItem& item, const SweepOptions& options) {
+RecomputedSolution check_flow(const StoredItem& item, const StoredSettings& options) {
     const FlowRecord& flow = *item.flow;
     RecomputedSolution s;
     s.item = item.item.name;
@@ -165,7 +147,7 @@ RecomputedSolution check_flow(const StoredItem& item, const SweepOptions& option
 }  // namespace
 
 std::vector<RecomputedSolution> recompute_solutions(const StoredRun& run, int threads) {
-    const SweepOptions options = options_of(run);
+    const StoredSettings options = settings_of(run);
     std::vector<std::function<RecomputedSolution()>> jobs;
     for (const StoredItem& item : run.items) {
         if (item.sweep)

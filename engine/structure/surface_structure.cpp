@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "engine/layout/final_metric.inl"
 #include "engine/layout/polished_scales.h"
@@ -28,23 +29,6 @@ class Stopwatch {
     using Clock = std::chrono::steady_clock;
     Clock::time_point last_ = Clock::now();
 };
-
-CommonRefinement refine(const SurfaceMesh& mesh, const FlowResult& flow, const FlowOptions& options,
-                        int kappa, double log_scale) {
-    if (flow.packing) {
-        // The circles' lengths as chords on the input's own triangulation.
-        std::vector<double> log_chord;
-        for (const double length : flow.edge_length) {
-            const double chord =
-                kappa == 0 ? length : 2 * (kappa < 0 ? std::sinh(length / 2) : std::sin(length / 2));
-            log_chord.push_back(std::log(chord) + log_scale);
-        }
-        return trivial_refinement(mesh, log_chord);
-    }
-    std::vector<double> u = flow.conformal_factor;
-    for (double& value : u) value += log_scale;
-    return make_common_refinement(mesh, u, flow.doubled, options.delaunay);
-}
 
 /// From scales solved in more digits where there are any.
 FinalMetric<double> rounded_metric(int kappa, const CommonRefinement& refinement, PolishedScales& scales) {
@@ -80,15 +64,42 @@ std::vector<double> final_edge_lengths(const SurfaceMesh& mesh, std::span<const 
     return length;
 }
 
+CommonRefinement refinement_of_flow(const SurfaceMesh& mesh, const FlowResult& flow, bool delaunay,
+                                    double log_scale) {
+    const int kappa = curvature_sign(flow.geometry);
+    if (flow.packing) {
+        // The circles' lengths as chords on the input's own triangulation.
+        std::vector<double> log_chord;
+        for (const double length : flow.edge_length) {
+            const double chord =
+                kappa == 0 ? length : 2 * (kappa < 0 ? std::sinh(length / 2) : std::sin(length / 2));
+            log_chord.push_back(std::log(chord) + log_scale);
+        }
+        return trivial_refinement(mesh, log_chord);
+    }
+    std::vector<double> u = flow.conformal_factor;
+    for (double& value : u) value += log_scale;
+    return make_common_refinement(mesh, u, flow.doubled, delaunay);
+}
+
 SurfaceStructure make_surface_structure(const SurfaceMesh& mesh, const StructureOptions& options) {
+    Stopwatch watch;
+    FlowResult flow = solve_flow(mesh, options.flow);
+    const double seconds = watch.lap();
+    SurfaceStructure s = make_surface_structure(mesh, std::move(flow), options);
+    s.seconds.flow = seconds;
+    return s;
+}
+
+SurfaceStructure make_surface_structure(const SurfaceMesh& mesh, FlowResult flow,
+                                        const StructureOptions& options) {
     SurfaceStructure s;
     Stopwatch watch;
-    s.flow = solve_flow(mesh, options.flow);
+    s.flow = std::move(flow);
     s.kappa = curvature_sign(s.flow.geometry);
-    s.seconds.flow = watch.lap();
     if (s.flow.outcome.status != Status::converged) return s;
     if (s.kappa == 0) s.log_scale = -0.5 * std::log(s.flow.area);
-    s.refinement.emplace(refine(mesh, s.flow, options.flow, s.kappa, s.log_scale));
+    s.refinement.emplace(refinement_of_flow(mesh, s.flow, options.flow.delaunay, s.log_scale));
     s.seconds.refinement = watch.lap();
     const std::vector<double> length =
         s.flow.packing ? s.flow.edge_length : final_edge_lengths(mesh, s.flow.conformal_factor, s.kappa);

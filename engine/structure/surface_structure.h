@@ -50,4 +50,17 @@ std::vector<double> final_edge_lengths(const SurfaceMesh& mesh, std::span<const 
 SurfaceStructure make_surface_structure(const SurfaceMesh& mesh, const StructureOptions& options);
 SurfaceStructure make_surface_structure(SurfaceMesh&&, const StructureOptions&) = delete;
 
+/// The structure of a metric that was found before: `flow` as solve_flow left it, or as it was stored
+/// (geometry, status, factor, target, `doubled`, the final triangulation's `twin`, of Euclidean metrics the
+/// area; of circle packings `packing` and the edge lengths). options.flow says whether flips are isometric
+/// first (`delaunay`); the rest of it is not looked at.
+SurfaceStructure make_surface_structure(const SurfaceMesh& mesh, FlowResult flow,
+                                        const StructureOptions& options);
+SurfaceStructure make_surface_structure(SurfaceMesh&&, FlowResult, const StructureOptions&) = delete;
+
+/// The common refinement of a surface and the metric of a flow that converged, its factor raised by
+/// `log_scale`.
+CommonRefinement refinement_of_flow(const SurfaceMesh& mesh, const FlowResult& flow, bool delaunay,
+                                    double log_scale);
+
 }  // namespace ricci

@@ -30,17 +30,6 @@ constexpr std::array<std::pair<std::string_view, PictureKind>, 10> kKinds = {
      {"surface-distortion", PictureKind::surface_distortion},
      {"angles", PictureKind::angles}}};
 
-/// About twenty-four squares across the domain; of a torus or annulus, the unit of its own area.
-double checker_cell(const StoredLayout& stored) {
-    if (stored.layout.kappa != 0) return 2.0 / 24.0;
-    double low = 0, high = 0;
-    for (const auto& p : stored.layout.position) {
-        low = std::min({low, p[0], p[1]});
-        high = std::max({high, p[0], p[1]});
-    }
-    return std::max(high - low, 1e-12) / 24.0;
-}
-
 FaceColours colours_of(PictureKind kind, const PictureSource& source) {
     if (kind == PictureKind::curvature || kind == PictureKind::surface_curvature)
         return diverging_colours(face_curvature(*source.mesh), 0.0, "K");
@@ -58,11 +47,21 @@ SvgPicture draw_angles(const PictureSource& source) {
     if (!source.curved_angle_ratio.empty()) curved = count_values(source.curved_angle_ratio, axis, 100);
     return draw_histogram(regular, curved,
                           {"Angle in the layout / angle on the surface", "ratio", "corners",
-                           "at vertices with |K| above 5 % of 2 pi"},
+                           "where |K| > 5 % of 2 pi"},
                           ScaleKind::linear, 1.0);
 }
 
 }  // namespace
+
+double checker_cell(const StoredLayout& stored) {
+    if (stored.layout.kappa != 0) return 2.0 / 24.0;
+    double low = 0, high = 0;
+    for (const auto& p : stored.layout.position) {
+        low = std::min({low, p[0], p[1]});
+        high = std::max({high, p[0], p[1]});
+    }
+    return std::max(high - low, 1e-12) / 24.0;
+}
 
 PictureKind parse_picture_kind(const std::string& text) {
     std::string known;

@@ -45,6 +45,10 @@ struct PictureSource {
 /// Takes what pictures need from a report.
 void take_quality(const ConformalityReport& report, PictureSource& source);
 
+/// Side of the squares of a checkerboard in the layout's own coordinates: about twenty-four across the
+/// domain.
+double checker_cell(const StoredLayout& stored);
+
 /// Curvature of the mesh at a face: mean over its corners of 2 pi (boundary: pi) less the angle sum, radians.
 /// // F
 std::vector<double> face_curvature(const SurfaceMesh& mesh);
