@@ -88,6 +88,7 @@ int run(int argc, char** argv) {
     add_index(app, common, action);
     add_path(app, common, action);
     add_verify(app, common, action);
+    add_report(app, common, action);
     add_export(app, common, action);
     add_isolated_child(app, action);
     try {

@@ -25,6 +25,7 @@ void add_path(CLI::App& app, CommonOptions& common, Action& action);
 void add_merge(CLI::App& app, CommonOptions& common, Action& action);
 void add_submit(CLI::App& app, CommonOptions& common, Action& action);
 void add_verify(CLI::App& app, CommonOptions& common, Action& action);
+void add_report(CLI::App& app, CommonOptions& common, Action& action);
 void add_export(CLI::App& app, CommonOptions& common, Action& action);
 
 /// Adds --json, --threads, --quiet, --verbose to a subcommand.
