@@ -1,0 +1,283 @@
+#!/usr/bin/env python3
+"""Checks README.md and docs/**/*.md against the tree and the program.
+
+    tests/docs/docs_test.py --ricci build/bin/ricci [unittest's arguments]
+
+Links, pictures and anchors lead somewhere; every command line of `ricci` names subcommands and options that exist; no
+paths of one machine; every subcommand has its place in the thesis's map or the cookbook; docs/commands.md is current.
+"""
+import argparse
+import functools
+import glob
+import os
+import re
+import shlex
+import subprocess
+import sys
+import unittest
+import urllib.parse
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+sys.path.insert(0, os.path.join(ROOT, "docs"))
+sys.dont_write_bytecode = True
+import make_commands  # noqa: E402
+
+PROGRAM = os.path.join(ROOT, "build/bin/ricci")
+
+
+def pages():
+    found = sorted(glob.glob(os.path.join(ROOT, "docs/**/*.md"), recursive=True))
+    return [os.path.join(ROOT, "README.md"), *found]
+
+
+@functools.lru_cache(maxsize=None)
+def lines_of(path):
+    """(number, text, within a code block) of each line."""
+    with open(path, encoding="utf-8") as file:
+        lines = file.read().split("\n")
+    result, fence, blank, listed = [], None, True, False
+    for number, line in enumerate(lines, 1):
+        match = re.match(r" {0,3}(```+|~~~+)", line)
+        if match and fence is None:
+            fence = match.group(1)
+            result.append((number, line, True))
+            continue
+        if fence is not None:
+            result.append((number, line, True))
+            if match and match.group(1).startswith(fence) and line.strip() == match.group(1):
+                fence = None
+            blank = True
+            continue
+        # Four blanks behind an empty line (or a line of code) are code; seven within a list.
+        if line.strip():
+            if not line.startswith(" "):
+                listed = bool(re.match(r"([*+-]|\d+\.) ", line))
+            code = blank and line.startswith(" " * (7 if listed else 4))
+        else:
+            code = False
+        result.append((number, line, code))
+        blank = not line.strip() or code
+    return tuple(result)
+
+
+def without_code_spans(text):
+    return re.sub(r"(`+).*?\1", lambda m: " " * len(m.group(0)), text)
+
+
+@functools.lru_cache(maxsize=None)
+def anchors_of(path):
+    """Names of the headings as forges make them."""
+    found, seen = set(), {}
+    for _, line, code in lines_of(path):
+        match = None if code else re.match(r"#{1,6}\s+(.*?)\s*#*$", line)
+        if not match:
+            continue
+        text = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", match.group(1)).replace("`", "")
+        slug = re.sub(r"[^\w\- ]", "", text.lower()).replace(" ", "-")
+        count = seen.get(slug, 0)
+        seen[slug] = count + 1
+        found.add(slug if count == 0 else f"{slug}-{count}")
+    return found
+
+
+def links_of(path):
+    """(line number, target) of every link and picture, over line ends too."""
+    text = "\n".join("" if code else without_code_spans(line) for _, line, code in lines_of(path))
+    for match in re.finditer(r"\]\(\s*<?([^)\s>]+)>?(?:\s+\"[^\"]*\")?\s*\)", text):
+        yield text.count("\n", 0, match.start()) + 1, match.group(1)
+    for match in re.finditer(r"(?:src|href)=\"([^\"]+)\"", text):
+        yield text.count("\n", 0, match.start()) + 1, match.group(1)
+
+
+@functools.lru_cache(maxsize=None)
+def help_of(words):
+    """Help text of `ricci WORDS`, or None where there is no such subcommand."""
+    result = subprocess.run([PROGRAM, *words, "--help"], capture_output=True, text=True)
+    return result.stdout if result.returncode == 0 else None
+
+
+@functools.lru_cache(maxsize=None)
+def options_of(words):
+    """Options of `ricci WORDS`: name -> whether it takes a value."""
+    found = {}
+    for line in help_of(words).split("\n"):
+        match = re.match(r"  ((?:-[A-Za-z0-9-]+,?)+)(.*)$", line)
+        if not match:
+            continue
+        value = bool(re.match(r" (?:[A-Z]+(?: in \S+)?(?: \S+)?|\S+:[A-Z])", match.group(2)))
+        for name in match.group(1).split(","):
+            found[name] = value
+    return found
+
+
+def shell_words(text):
+    """Words of a command line; shell operators are words of their own."""
+    lexer = shlex.shlex(text, posix=True, punctuation_chars=";&|()<>")
+    lexer.whitespace_split = True
+    lexer.commenters = "#"
+    return list(lexer)
+
+
+def invocations(words):
+    """Argument lists of each `ricci` among the words of one line."""
+    current = None
+    for word in words:
+        if re.fullmatch(r"[;&|()<>]+", word):
+            if current is not None:
+                yield current
+            current = None
+        elif current is not None:
+            current.append(word)
+        elif word == "ricci" or word.endswith("/bin/ricci"):
+            current = []
+    if current is not None:
+        yield current
+
+
+def check_invocation(arguments):
+    """What is wrong with `ricci ARGUMENTS`, or None."""
+    if not arguments or arguments[0] in ("--help", "--version") or re.fullmatch(r"\.\.\.|[A-Z]+", arguments[0]):
+        return None
+    words, rest = [], list(arguments)
+    while rest and re.fullmatch(r"[a-z][a-z0-9-]*", rest[0]):
+        if help_of((*words, rest[0])) is None or (words and f"  {rest[0]} " not in help_of(tuple(words)) + " "):
+            break
+        words.append(rest.pop(0))
+    if not words:
+        return f"no subcommand '{arguments[0]}'"
+    if "Subcommands:" in help_of(tuple(words)) and rest and re.fullmatch(r"[a-z]+", rest[0]):
+        return f"no subcommand '{' '.join(words)} {rest[0]}'"
+    options = options_of(tuple(words))
+    for argument in rest:
+        argument = argument.strip("[]")
+        if not argument.startswith("-") or re.fullmatch(r"-[\d.]+", argument) or argument == "-":
+            continue
+        name = argument.split("=")[0]
+        if name not in options and name[:2] not in options:
+            return f"`ricci {' '.join(words)}` has no option {name}"
+        if name.startswith("--") and name not in options:
+            return f"`ricci {' '.join(words)}` has no option {name}"
+    return None
+
+
+def command_lines(path):
+    """(line number, text) of what a reader may type: lines of code blocks, joined at a backslash, and code spans."""
+    joined, first = "", 0
+    for number, line, code in lines_of(path):
+        if code:
+            first = first or number
+            if line.rstrip().endswith("\\"):
+                joined += line.rstrip()[:-1] + " "
+                continue
+            yield first, joined + line
+            joined, first = "", 0
+    text = "\n".join("" if code else line for _, line, code in lines_of(path))
+    for match in re.finditer(r"(`+)(.+?)\1", text, re.DOTALL):
+        yield text.count("\n", 0, match.start()) + 1, match.group(2).replace("\n", " ")
+
+
+def place(path, number):
+    return f"{os.path.relpath(path, ROOT)}:{number}"
+
+
+class Pages(unittest.TestCase):
+    longMessage = False
+
+    def test_links_lead_somewhere(self):
+        wrong = []
+        for path in pages():
+            for number, target in links_of(path):
+                if re.match(r"[a-z]+:", target):
+                    continue
+                name, _, anchor = urllib.parse.unquote(target).partition("#")
+                file = os.path.normpath(os.path.join(os.path.dirname(path), name)) if name else path
+                if not os.path.exists(file):
+                    wrong.append(f"{place(path, number)}: no file {target}")
+                elif anchor and file.endswith(".md") and anchor not in anchors_of(file):
+                    wrong.append(f"{place(path, number)}: no heading {target}")
+        self.assertFalse(wrong, "\n" + "\n".join(wrong))
+
+    def test_pictures_are_shown_and_small(self):
+        shown = set()
+        for path in pages():
+            for _, target in links_of(path):
+                shown.add(os.path.normpath(os.path.join(os.path.dirname(path), target)))
+        wrong, total = [], 0
+        for file in sorted(glob.glob(os.path.join(ROOT, "docs/pictures/*"))):
+            size = os.path.getsize(file)
+            total += size
+            if file not in shown:
+                wrong.append(f"{os.path.relpath(file, ROOT)} is shown nowhere")
+            if size > 150_000:
+                wrong.append(f"{os.path.relpath(file, ROOT)} has {size} bytes, more than 150 kB")
+        if total > 1_500_000:
+            wrong.append(f"docs/pictures has {total} bytes, more than 1.5 MB")
+        self.assertFalse(wrong, "\n" + "\n".join(wrong))
+
+    def test_no_paths_of_one_machine(self):
+        wrong = []
+        for path in pages():
+            for number, line, _ in lines_of(path):
+                if re.search(r"(?<![\w./-])/(?:work|tmp|home|root|Users)/", line):
+                    wrong.append(f"{place(path, number)}: {line.strip()}")
+        self.assertFalse(wrong, "\n" + "\n".join(wrong))
+
+
+class Commands(unittest.TestCase):
+    longMessage = False
+
+    def setUp(self):
+        self.assertTrue(os.path.exists(PROGRAM), f"no program {PROGRAM}: give --ricci")
+
+    def test_command_lines_exist(self):
+        wrong, seen = [], 0
+        for path in pages():
+            for number, text in command_lines(path):
+                if "ricci" not in text:
+                    continue
+                try:
+                    words = shell_words(text)
+                except ValueError:  # no command line: an apostrophe in output that is quoted
+                    continue
+                for arguments in invocations(words):
+                    seen += 1
+                    # `ricci index build/query ...`: each of them.
+                    variants = [arguments]
+                    for k, word in enumerate(arguments[:2]):
+                        if re.fullmatch(r"[a-z]+(/[a-z]+)+", word):
+                            variants = [[*arguments[:k], w, *arguments[k + 1:]] for w in word.split("/")]
+                    for variant in variants:
+                        problem = check_invocation(variant)
+                        if problem:
+                            wrong.append(f"{place(path, number)}: {problem}: ricci {' '.join(variant)}")
+        self.assertFalse(wrong, "\n" + "\n".join(wrong))
+        self.assertGreater(seen, 100, "hardly any command line found: the test looks at the wrong places")
+
+    def test_the_checker_sees_mistakes(self):
+        for text, sound in (("ricci flow a.off --cone=0:-2pi --log", True), ("ricci flow a.off --conee=0:1", False),
+                            ("ricci flwo a.off", False), ("ricci index query i.h5 a.off -k 5", True),
+                            ("ricci index ask i.h5", False), ("ricci info a.off && ricci layout a.off --nothing", False)):
+            problems = [p for p in map(check_invocation, invocations(shell_words(text))) if p]
+            self.assertEqual(not problems, sound, f"{text}: {problems}")
+
+    def test_every_subcommand_has_its_place(self):
+        text = ""
+        for name in ("docs/thesis.md", "docs/cookbook.md"):
+            with open(os.path.join(ROOT, name), encoding="utf-8") as file:
+                text += file.read()
+        missing = [" ".join(words) for words, _ in make_commands.commands(PROGRAM)
+                   if not re.search(r"ricci " + " ".join(words) + r"\b", text)]
+        self.assertFalse(missing, f"neither in docs/thesis.md nor in docs/cookbook.md: {', '.join(missing)}")
+
+    def test_reference_of_commands_is_current(self):
+        with open(make_commands.PAGE, encoding="utf-8") as file:
+            current = file.read() == make_commands.page(PROGRAM)
+        self.assertTrue(current, f"docs/commands.md is not current: run docs/make_commands.py {PROGRAM}")
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(add_help=False)
+    parser.add_argument("--ricci", default=PROGRAM)
+    known, others = parser.parse_known_args()
+    PROGRAM = os.path.abspath(known.ricci)
+    unittest.main(argv=[sys.argv[0], *others])
