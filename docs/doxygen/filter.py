@@ -149,9 +149,8 @@ def header(path, lines):
 def page(path, lines):
     """Links as they are found from build/docs/html."""
     del path
-    back = "../../../docs/"
-    link = re.compile(r"\]\((?!https?:|#)([^)]+)\)")
-    return [link.sub(lambda m: "](" + back + m.group(1) + ")", line) for line in lines]
+    link = re.compile(r"\[([^\]]*)\]\((?!https?:|#)([^)]+)\)")
+    return [link.sub(r'<a href="../../../docs/\2">\1</a>', line) for line in lines]
 
 
 def main():
