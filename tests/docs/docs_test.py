@@ -14,6 +14,7 @@ import re
 import shlex
 import subprocess
 import sys
+import tempfile
 import unittest
 import urllib.parse
 
@@ -214,6 +215,22 @@ class Pages(unittest.TestCase):
             wrong.append(f"docs/pictures has {total} bytes, more than 1.5 MB")
         self.assertFalse(wrong, "\n" + "\n".join(wrong))
 
+    def test_sources_of_the_thesis_map_exist(self):
+        path = os.path.join(ROOT, "docs/thesis.md")
+        wrong, seen = [], 0
+        for number, line, _ in lines_of(path):
+            before = ""
+            for name in re.findall(r"`([\w./]+(?:/|\.(?:h|cpp|py)))`", line if line.startswith("|") else ""):
+                seen += 1
+                tried = [os.path.join(ROOT, prefix, name) for prefix in ("", "engine", "tests", before)]
+                found = [file for file in tried if os.path.exists(file)]
+                if found:
+                    before = os.path.dirname(os.path.relpath(found[0].rstrip("/"), ROOT))
+                else:
+                    wrong.append(f"{place(path, number)}: no source {name}")
+        self.assertFalse(wrong, "\n" + "\n".join(wrong))
+        self.assertGreater(seen, 80)
+
     def test_no_paths_of_one_machine(self):
         wrong = []
         for path in pages():
@@ -268,6 +285,29 @@ class Commands(unittest.TestCase):
         missing = [" ".join(words) for words, _ in make_commands.commands(PROGRAM)
                    if not re.search(r"ricci " + " ".join(words) + r"\b", text)]
         self.assertFalse(missing, f"neither in docs/thesis.md nor in docs/cookbook.md: {', '.join(missing)}")
+
+    def test_commands_of_the_thesis_map_run(self):
+        """In its order, in one empty folder; all but those of the last section, which need more than a mesh."""
+        path = os.path.join(ROOT, "docs/thesis.md")
+        found, inside = [], True
+        for number, line, code in lines_of(path):
+            inside = inside and not line.startswith("## Beyond")
+            if not inside:
+                continue
+            if code and line.strip():
+                found.append((number, line.strip()))
+            found += [(number, span) for span in re.findall(r"`(ricci [a-z]+ [^`]+)`", "" if code else line)]
+        wrong = []
+        with tempfile.TemporaryDirectory() as folder:
+            environment = {**os.environ, "RICCI": PROGRAM, "NO_COLOR": "1"}
+            for number, command in found:
+                result = subprocess.run(["bash", "-c", 'ricci() { "$RICCI" "$@"; }; ' + command], cwd=folder,
+                                        env=environment, capture_output=True, text=True)
+                if result.returncode != 0:
+                    wrong.append(f"{place(path, number)}: {command}: status {result.returncode}: "
+                                 f"{result.stderr.strip()[-300:]}")
+        self.assertFalse(wrong, "\n" + "\n".join(wrong))
+        self.assertGreater(len(found), 50)
 
     def test_reference_of_commands_is_current(self):
         with open(make_commands.PAGE, encoding="utf-8") as file:
