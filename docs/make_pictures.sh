@@ -31,39 +31,38 @@ keep() {
     ls -s --block-size=1 "$out/$name".*
 }
 
-# layout NAME MESH OPTION...: a picture of `ricci layout`.
+# layout PIXELS NAME MESH OPTION...: a picture of `ricci layout`.
 layout() {
-    local name=$1 mesh=$2
-    shift 2
+    local pixels=$1 name=$2 mesh=$3
+    shift 3
     want "$name" || return 0
     "$ricci" layout "$mesh" --svg "$name.svg" "$@" --quiet > "$name.txt"
-    keep "$name"
+    keep "$name" "$pixels"
 }
 
 # The kitten: a torus.
 kitten=$data/closed_g1/kitten.obj
-layout kitten_surface "$kitten" --picture surface
-layout kitten_domain "$kitten" --picture domain
-layout kitten_tessellation "$kitten" --picture tessellation --copies 60
-layout kitten_texture "$kitten" --picture texture
+layout 420 kitten_surface "$kitten" --picture surface
+layout 720 kitten_domain "$kitten" --picture domain
+layout 480 kitten_tessellation "$kitten" --picture tessellation --copies 60
 
-# Genus 2 in three models.
+# Genus 2 in two models.
 double=$data/closed_g2/double-torus.obj
-layout double_torus_surface "$double" --picture surface
-layout double_torus_domain "$double" --picture domain
-layout double_torus_tessellation "$double" --picture tessellation --copies 3000
-layout double_torus_klein "$double" --picture tessellation --copies 3000 --model klein
-layout double_torus_texture "$double" --picture texture
-layout skull_domain "$data/closed_g2/skull.obj" --picture domain
+layout 360 double_torus_surface "$double" --picture surface
+layout 640 double_torus_domain "$double" --picture domain
+layout 640 double_torus_tessellation "$double" --picture tessellation --copies 3000
+layout 480 double_torus_klein "$double" --picture tessellation --copies 3000 --model klein
+layout 360 double_torus_texture "$double" --picture texture
+layout 640 flat_best "$double" --cone=4:-4pi --picture domain
 
-# A tube, a face, a sphere.
-layout colon_strip "$data/tube_colon/ct_colon_segment_annulus.off" --picture curvature
-layout colon_surface "$data/tube_colon/ct_colon_segment_annulus.off" --picture surface-curvature
-layout face_texture "$data/disk/face.obj" --picture texture --target boundary --geometry euclidean
-layout face_angles "$data/disk/face.obj" --picture angles --subdivide 1
-layout planck_sphere "$data/closed_g0/maxplanck.nf25k.off" --picture curvature
-layout planck_texture "$data/closed_g0/maxplanck.nf25k.off" --picture texture
-layout chair_domain "$data/pants/BentChair.obj" --picture domain
+# A tube, a face, a sphere, a chair with three boundaries.
+colon=$data/tube_colon/ct_colon_segment_annulus.off
+layout 640 colon_surface "$colon" --picture surface-curvature
+layout 420 colon_strip "$colon" --picture curvature
+layout 420 face_texture "$data/disk/face.obj" --picture texture --geometry euclidean --target boundary
+layout 640 face_angles "$data/disk/face.obj" --picture angles --subdivide 1
+layout 600 planck_sphere "$data/closed_g0/maxplanck.nf25k.off" --picture curvature
+layout 600 chair_domain "$data/pants/BentChair.obj" --picture domain
 
 # Every vertex as the only cone.
 if want sweep_distortion; then
@@ -75,11 +74,11 @@ fi
 # Closed geodesics and coordinates.
 if want geodesics; then
     "$ricci" spectrum "$double" --count 8 --draw 4 --svg geodesics.svg --quiet > geodesics.txt
-    keep geodesics
+    keep geodesics 360
 fi
 if want marking; then
     "$ricci" teichmuller "$double" --svg marking.svg --quiet > marking.txt
-    keep marking
+    keep marking 360
 fi
 
 # A deformation: the double torus stretched along x.
