@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Checks README.md and docs/**/*.md against the tree and the program.
 
-    tests/docs/docs_test.py --ricci build/bin/ricci [unittest's arguments]
+    tests/docs/docs_test.py --ricci build/bin/ricci [--example build/tests/docs/ricci_docs_example] [unittest's arguments]
 
 Links, pictures and anchors lead somewhere; every command line of `ricci` names subcommands and options that exist; no
-paths of one machine; every subcommand has its place in the thesis's map or the cookbook; docs/commands.md is current.
+paths of one machine; every subcommand has its place in the thesis's map or the cookbook; the map's commands run and its
+sources exist; docs/commands.md is current; the example of docs/api.md builds and runs.
 """
 import argparse
 import functools
@@ -24,6 +25,7 @@ sys.dont_write_bytecode = True
 import make_commands  # noqa: E402
 
 PROGRAM = os.path.join(ROOT, "build/bin/ricci")
+EXAMPLE = os.path.join(ROOT, "build/tests/docs/ricci_docs_example")
 
 
 def pages():
@@ -308,9 +310,34 @@ class Commands(unittest.TestCase):
         self.assertTrue(current, f"docs/commands.md is not current: run docs/make_commands.py {PROGRAM}")
 
 
+class Library(unittest.TestCase):
+    longMessage = False
+
+    def test_example_of_the_library_page_is_the_one_that_is_built(self):
+        with open(os.path.join(ROOT, "tests/docs/api_example.cpp"), encoding="utf-8") as file:
+            source = file.read()
+        with open(os.path.join(ROOT, "docs/api.md"), encoding="utf-8") as file:
+            page = file.read()
+        self.assertIn("```cpp\n" + source + "```\n", page, "docs/api.md and tests/docs/api_example.cpp differ")
+
+    def test_example_runs(self):
+        if not os.path.exists(EXAMPLE):
+            self.skipTest(f"{EXAMPLE} is not built")
+        with tempfile.TemporaryDirectory() as folder:
+            mesh = os.path.join(folder, "eight.off")
+            subprocess.run([PROGRAM, "generate", "eight", "--faces", "800", "-o", mesh, "--quiet"], check=True)
+            output = subprocess.run([EXAMPLE, mesh], check=True, capture_output=True, text=True).stdout
+        match = re.fullmatch(r"residual (\S+), relator error (\S+)\n", output)
+        self.assertTrue(match, output)
+        self.assertLess(float(match.group(1)), 1e-10)
+        self.assertLess(float(match.group(2)), 1e-10)
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(add_help=False)
     parser.add_argument("--ricci", default=PROGRAM)
+    parser.add_argument("--example", default=EXAMPLE)
     known, others = parser.parse_known_args()
     PROGRAM = os.path.abspath(known.ricci)
+    EXAMPLE = os.path.abspath(known.example)
     unittest.main(argv=[sys.argv[0], *others])
