@@ -14,9 +14,8 @@ bool flippable(const Connectivity& connectivity, Index h);
 ///        /   \                  / | \         h becomes i->l, next(h) becomes l->k (the new edge),
 ///      /   f   \              /   |   \       t becomes j->k, next(t) becomes k->l;
 ///     i ---h--> j    ===>    i  f | g  j      prev(h) and prev(t) stay where they are.
-///      \   g   /              \   |   /       The edge keeps its number. Only faces f and g, and the twins
-///      of
-///        \   /                  \ | /         the two halfedges that moved, are rewritten.
+///      \   g   /              \   |   /       The edge keeps its number. Only faces f and g, and the
+///        \   /                  \ | /         twins of the two halfedges that moved, are rewritten.
 ///          l                      l
 /// `log_chord` (3F) moves along; `new_log` becomes the length of the new edge. Precondition: flippable.
 template <class Real>

@@ -36,15 +36,13 @@ struct ChainLink {
 /// a chain of curves x1, x2, ...: x1 goes around the first hole, x(k+1) around x(k) and one more.
 ///
 /// Rules, in this order (all lengths hyperbolic):
-/// 1. a1 is the shortest simple closed geodesic that does not separate, b1 the shortest simple one that meets
-/// it
-///    once; a(i), b(i) likewise, disjoint from the handles before. Then b is turned along a by as many full
-///    turns as bring its twist (dual_curves.h) into [-l/4, 3l/4), l the length of a: shapes with a mirror
-///    symmetry, where the twist is 0 or l/2, lie well inside.
+/// 1. a1 is the shortest simple closed geodesic that does not separate, b1 the shortest simple one that
+///    meets it once; a(i), b(i) likewise, disjoint from the handles before. Then b is turned along a by as
+///    many full turns as bring its twist (dual_curves.h) into [-l/4, 3l/4), l the length of a: shapes with a
+///    mirror symmetry, where the twist is 0 or l/2, lie well inside.
 /// 2. The chain begins with the hole of the first handle, or with the shortest boundary where there is none.
-/// Next
-///    comes the hole that is nearest to x(k) along a common perpendicular: handles first, then boundaries;
-///    x(k+1) goes around both along that perpendicular.
+///    Next comes the hole that is nearest to x(k) along a common perpendicular: handles first, then
+///    boundaries; x(k+1) goes around both along that perpendicular.
 /// Handles and boundaries are named anew in the order of the chain.
 struct Marking {
     std::vector<MarkedHandle> handles;  // in the order of the chain, in frames of their own

@@ -1,13 +1,12 @@
 // The quadrilateral skin of a row of square blocks with holes: the pattern from which handle surfaces are
 // made.
 //
-//     +---+---+---+---+---+      genus 2, seen from above: each coarse cell is a cube; the solid is the plate
-//     |   |   |   |   |   |      (2g+1) x 3 x 1 without the g hole cells. Its skin has 18 g + 14 coarse
-//     squares,
-//     +---+---+---+---+---+      each cut into n x n quads.
+//     +---+---+---+---+---+      genus 2, seen from above: each coarse cell is a cube; the solid is the
+//     |   |   |   |   |   |      plate (2g+1) x 3 x 1 without the g hole cells. Its skin has 18 g + 14
+//     +---+---+---+---+---+      coarse squares, each cut into n x n quads.
 //     |   | o |   | o |   |
-//     +---+---+---+---+---+      Positions are integers in units of half a quad, centred at the origin, so
-//     that |   |   |   |   |   |      the reflections of the pattern are changes of sign.
+//     +---+---+---+---+---+      Positions are integers in units of half a quad, centred at the origin,
+//     |   |   |   |   |   |      so the reflections of the pattern are changes of sign.
 //     +---+---+---+---+---+
 #pragma once
 
