@@ -526,7 +526,7 @@
                 if (field.words) rows.push([field.name, Number.isFinite(value) ? field.words[value] : 'no row']);
                 else rows.push([field.name, numberText(value)]);
             }
-            rows.push(['position', p.map((x) => numberText(Number(x.toPrecision(4)))).join(', ')]);
+            rows.push(['position', p.map((x) => String(Number((Math.abs(x) < 1e-4 * this.stage.size ? 0 : x).toPrecision(4)))).join(', ')]);
             this.readout.replaceChildren(...rows.map(([name, value]) => element('div', {}, element('dt', {}, name), element('dd', {}, value))));
             this.figure.dataset.vertex = String(number);
             this.vertexInput.value = String(number);
