@@ -7,6 +7,7 @@
 #include "io/store/csv_text.h"
 #include "io/store/durable.h"
 #include "io/store/schema.h"
+#include "io/store/schema_shapes.h"
 #include "io/store/whole_file.h"
 
 namespace ricci {
@@ -62,14 +63,19 @@ DistanceRecord read_record(hid_t parent, const std::string& type) {
 
 }  // namespace
 
+std::vector<DistanceRecord> schema::read_distances(hid_t root) {
+    std::vector<DistanceRecord> records;
+    const Handle group = hdf5::open_group(root, "distances");
+    for (const std::string& type : hdf5::link_names(group)) records.push_back(read_record(group, type));
+    return records;
+}
+
 DistanceFile read_distance_file(const std::string& path) {
     const hdf5::Session session;
     DistanceFile file;
     schema::read_whole_file(path, "distances", [&](hid_t root) {
         file.info = schema::read_run_info(root);
-        const Handle group = hdf5::open_group(root, "distances");
-        for (const std::string& type : hdf5::link_names(group))
-            file.records.push_back(read_record(group, type));
+        file.records = schema::read_distances(root);
     });
     return file;
 }

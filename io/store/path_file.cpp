@@ -7,6 +7,7 @@
 #include "io/store/csv_text.h"
 #include "io/store/durable.h"
 #include "io/store/schema.h"
+#include "io/store/schema_shapes.h"
 #include "io/store/whole_file.h"
 
 namespace ricci {
@@ -89,15 +90,20 @@ PathRecord read_record(hid_t parent, const std::string& name) {
 
 }  // namespace
 
+std::vector<PathRecord> schema::read_paths(hid_t root) {
+    std::vector<PathRecord> records;
+    const Handle group = hdf5::open_group(root, "paths");
+    const std::size_t sequences = hdf5::link_names(group).size();
+    for (std::size_t k = 1; k <= sequences; ++k) records.push_back(read_record(group, fmt::format("{}", k)));
+    return records;
+}
+
 PathFile read_path_file(const std::string& path) {
     const hdf5::Session session;
     PathFile file;
     schema::read_whole_file(path, "paths", [&](hid_t root) {
         file.info = schema::read_run_info(root);
-        const Handle group = hdf5::open_group(root, "paths");
-        const std::size_t sequences = hdf5::link_names(group).size();
-        for (std::size_t k = 1; k <= sequences; ++k)
-            file.records.push_back(read_record(group, fmt::format("{}", k)));
+        file.records = schema::read_paths(root);
     });
     return file;
 }

@@ -15,6 +15,7 @@
 #include "io/store/run_store.h"
 #include "io/store/schema.h"
 #include "io/store/schema_index.h"
+#include "io/store/schema_shapes.h"
 #include "io/store/schema_shard.h"
 #include "io/store/verify_file.h"
 
@@ -162,7 +163,13 @@ Complaints check_contents(const std::string& path, std::uint64_t bytes) {
         if (hdf5::read_attribute<std::int32_t>(file, "complete") != 1)
             complaints.emplace_back("attribute complete is not 1");
         const std::string kind = schema::read_kind(file);
-        if (kind == "distances" || kind == "paths") return complaints;
+        if (kind == "distances" || kind == "paths") {
+            if (kind == "distances")
+                schema::read_distances(file);
+            else
+                schema::read_paths(file);
+            return complaints;
+        }
         if (kind == "index") {
             check_index(file, info.status, complaints);
         } else {
