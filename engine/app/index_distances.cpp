@@ -3,7 +3,6 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "engine/app/app.h"
@@ -11,49 +10,12 @@
 #include "engine/app/index_vectors.h"
 #include "engine/app/pictures/distance_pictures.h"
 #include "engine/app/records.h"
+#include "engine/app/type_distances.h"
 #include "io/store/distance_file.h"
 #include "kernels/parallel.h"
 
 namespace ricci::app {
 namespace {
-
-/// The shapes of one type that have a distance, and everything said about them.
-struct TypeDistances {
-    std::string type;
-    std::vector<std::string> names;
-    DistanceMatrix matrix;
-    Dendrogram tree;
-    std::vector<std::size_t> order, clusters;
-};
-
-/// Leaves out shapes without the vector asked for (no coordinates), which is logged.
-ShapeVectors known_vectors(const IndexBucket& bucket, ShapeMetric metric, std::vector<std::string>& names) {
-    ShapeVectors all = shape_vectors(bucket, metric), known = all;
-    known.values.clear();
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        const std::string name = shape_name(bucket.files[i], bucket.component[i], bucket.components[i]);
-        const std::span<const double> row = all.row(i);
-        if (!std::all_of(row.begin(), row.end(), [](double v) { return std::isfinite(v); })) {
-            spdlog::warn("{}: has no {}, left out", name, name_of(metric));
-            continue;
-        }
-        names.push_back(name);
-        known.values.insert(known.values.end(), row.begin(), row.end());
-    }
-    return known;
-}
-
-TypeDistances measure(const IndexBucket& bucket, const IndexArguments& a, ShapeMetric metric,
-                      Linkage linkage) {
-    TypeDistances d;
-    d.type = type_name(bucket.genus, bucket.boundaries);
-    const ShapeVectors vectors = known_vectors(bucket, metric, d.names);
-    d.matrix = distance_matrix(vectors, true);
-    d.tree = cluster_shapes(d.matrix, linkage);
-    d.order = leaf_order(d.tree);
-    d.clusters = flat_clusters(d.tree, a.clusters > 0 ? static_cast<std::size_t>(a.clusters) : 1);
-    return d;
-}
 
 std::vector<std::int32_t> narrow(const std::vector<std::size_t>& values) {
     return {values.begin(), values.end()};
@@ -160,7 +122,9 @@ int index_distances(const IndexArguments& a, const CommonOptions& common) {
     std::vector<DistanceRecord> records;
     for (const IndexBucket& bucket : buckets) {
         TypeDistances d;
-        with_thread_limit(common.resolved_threads(), [&] { d = measure(bucket, a, metric, linkage); });
+        with_thread_limit(common.resolved_threads(), [&] {
+            d = distances_of(bucket, metric, linkage, static_cast<std::size_t>(a.clusters));
+        });
         if (d.names.empty()) {
             spdlog::warn("{}: no shape has {}", d.type, a.metric);
             continue;
