@@ -9,7 +9,7 @@ folder.mkdir(exist_ok=True)
 for faces in (1500, 2500):
     ricci.generate("eight", faces=faces).save(folder / f"eight{faces}.off")
     ricci.generate("torus", faces=faces, major=2.5).save(folder / f"torus{faces}.off")
-ricci.generate("genus-g", genus=2, faces=2000).save(folder / "genus2.off")
+ricci.generate("bolza", faces=2000).save(folder / "bolza.len")
 
 index = ricci.Index.build("shapes.h5", folder)
 print(index, index.types)

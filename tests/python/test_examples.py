@@ -60,7 +60,7 @@ def test_index():
     nearest = re.findall(r"^ +[0-9.]+  (\S+)", out, re.MULTILINE)
     assert len(nearest) == 3 and all("eight" in name for name in nearest[:2])
     clusters = dict((name, number) for number, name in re.findall(r"cluster (\d): (\S+)", out))
-    assert clusters["shapes/eight1500.off"] == clusters["shapes/eight2500.off"] != clusters["shapes/genus2.off"]
+    assert clusters["shapes/eight1500.off"] == clusters["shapes/eight2500.off"] != clusters["shapes/bolza.len"]
 
 
 def test_resume():

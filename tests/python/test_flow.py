@@ -32,7 +32,7 @@ def test_curvature_and_gauss_bonnet(eight):
     assert np.isclose(result.curvature.sum(), 2 * np.pi * eight.euler_characteristic, atol=1e-8)
     assert abs(result.curvature[7] + 4 * np.pi) <= 1e-10
     assert np.abs(np.delete(result.curvature, 7)).max() <= 1e-10
-    assert result.log["residual_max"][-1] == result.residual_max
+    assert abs(result.log["residual_max"][-1] - result.residual_max) < 1e-11  # measured again at the end
     assert len(result.log["flips"]) == len(result.log["step"])
     assert result.area > 0
 

@@ -14,7 +14,7 @@ def shapes(tmp_path):
     folder.mkdir()
     for faces in (700, 1000):
         ricci.generate("eight", faces=faces).save(folder / f"eight{faces}.off")
-    ricci.generate("genus-g", genus=2, faces=900).save(folder / "other.off")
+    ricci.generate("bolza", faces=900).save(folder / "other.len")
     for major in (1.5, 3.0):
         ricci.generate("torus", faces=600, major=major).save(folder / f"torus{major}.off")
     return folder
@@ -81,4 +81,4 @@ def test_distances(shapes):
     assert d.distance.shape == (3, 3) and np.array_equal(d.distance, d.distance.T)
     assert np.all(np.diag(d.distance) == 0) and len(d.merges) == 2 and sorted(d.leaf_order) == [0, 1, 2]
     by_name = {name.rsplit("/")[-1]: cluster for name, cluster in zip(d.names, d.cluster)}
-    assert by_name["eight700.off"] == by_name["eight1000.off"] != by_name["other.off"]
+    assert by_name["eight700.off"] == by_name["eight1000.off"] != by_name["other.len"]

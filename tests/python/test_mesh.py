@@ -176,7 +176,9 @@ def test_views_of_a_mesh_outlive_it():
 
 def test_intrinsic_surface():
     bolza = ricci.generate("bolza", faces=500)
-    assert bolza.intrinsic and bolza.points is None and bolza.genus == 2
+    assert bolza.intrinsic and bolza.genus == 2 and bolza.edge_length.shape == (3 * bolza.faces,)
+    with pytest.raises(ValueError, match="no points"):
+        _ = bolza.points
     bolza.save("bolza.len")
     again = ricci.load("bolza.len")
     assert np.array_equal(again.edge_length, bolza.edge_length) and np.array_equal(again.twin, bolza.twin)

@@ -129,8 +129,10 @@ def test_options_that_there_are_not(eight, options):
 
 
 def test_output_that_cannot_be_written(eight):
-    with pytest.raises(ricci.FileError, match="nowhere"):
-        ricci.sweep(eight, vertices="sample:2", output="nowhere/x/y.h5" if os.geteuid() else "/proc/nowhere.h5")
+    with open("file", "w"):
+        pass
+    with pytest.raises(ricci.FileError, match="file"):
+        ricci.sweep(eight, vertices="sample:2", output="file/y.h5")
 
 
 def test_output_of_other_options_is_not_resumed(eight):

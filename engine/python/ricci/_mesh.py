@@ -20,7 +20,7 @@ def _defects(rows: list[tuple[str, str, int, str]]) -> list[Defect]:
     return [Defect(*row) for row in rows]
 
 
-def _surfaces(made: _core.Components, what: str) -> list[_core.Surface]:
+def _surfaces(made: _core._Components, what: str) -> list[_core.Surface]:
     surfaces, _, errors = made
     if errors:
         defects = _defects(errors)
@@ -127,9 +127,12 @@ class Mesh:
         return self._surface
 
     @property
-    def points(self) -> Optional[FloatArray]:
-        """Vertex positions, (V, 3), read-only view; None for an intrinsic surface."""
-        return self._surface.points if self._given is None else _read_only(self._given[0])
+    def points(self) -> FloatArray:
+        """Vertex positions, (V, 3), read-only view. Raises ValueError for an intrinsic surface, which has none."""
+        points = self._surface.points if self._given is None else _read_only(self._given[0])
+        if points is None:
+            raise ValueError(f"{self.name} is an intrinsic surface: it has edge lengths and no points")
+        return points
 
     @property
     def triangles(self) -> IntArray:

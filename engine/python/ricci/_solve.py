@@ -217,7 +217,9 @@ def spectrum(
 
 
 def _curves(curves: Optional[NamedCurves]) -> list[tuple[str, list[int]]]:
-    return [(name, [int(v) for v in vertices]) for name, vertices in (curves or {}).items()]
+    paths = [(name, [int(v) for v in vertices]) for name, vertices in (curves or {}).items()]
+    # Paths of generators end where they began.
+    return [(name, path[:-1] if len(path) > 1 and path[0] == path[-1] else path) for name, path in paths]
 
 
 def teichmuller(
@@ -237,8 +239,8 @@ def teichmuller(
     """Coordinates in Teichmueller space: lengths of 6g-5+3r geodesics (chi < 0), modulus (torus, annulus), descriptors of
     spheres and disks (docs/shape_space.md).
 
-    marking : {name: closed path of vertices, joined by edges, the last to the first}, whose geodesics' lengths are the
-    coordinates instead of those by the rule. loops : further closed paths, whose classes and lengths are measured.
+    marking : {name: closed path of vertices, joined by edges, the last to the first (which may be repeated)}, whose
+    geodesics' lengths are the coordinates instead of those by the rule. loops : further closed paths, whose classes and lengths are measured.
     words : in the canonical generators. draw : the coordinates' geodesics on the mesh too.
     """
     options = _shape_options(tolerance, max_iterations, delaunay, timeout)
