@@ -2,10 +2,10 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
-#include <limits>
 
 #include "engine/app/app.h"
 #include "engine/app/commands.h"
+#include "engine/app/layout_extras.h"
 #include "engine/app/layout_record.h"
 #include "engine/app/pictures/picture_kinds.h"
 #include "engine/app/quality_record.h"
@@ -50,9 +50,13 @@ void print_text(const std::string& item, const SurfaceStructure& s, double secon
 
 /// Copies of the domain, where asked for.
 std::vector<Isometry<double>> copies_of(const LayoutArguments& a, const SurfaceStructure& s) {
-    if (a.copies == 0 || !s.refinement) return {};
-    const double farthest = s.kappa < 0 ? a.distance : std::numeric_limits<double>::infinity();
-    return tessellate(s.layout, static_cast<std::size_t>(a.copies), farthest);
+    return tessellation_of(s, a.copies, a.distance);
+}
+
+/// What was asked for beyond the layout.
+LayoutExtras extras_of(const LayoutArguments& a, const SurfaceMesh& mesh, const SurfaceStructure& s) {
+    const bool quality = a.quality || (!a.svg.empty() && needs_quality(parse_picture_kind(a.picture)));
+    return make_layout_extras(mesh, s, {quality, a.atlas, a.charts});
 }
 
 /// OUT.obj, or OUT.c<component>.obj where there are several.
@@ -95,30 +99,7 @@ SurfaceMesh surface_to_solve(const SurfaceMesh& component, const LayoutArguments
     return mesh;
 }
 
-/// What was asked for beyond the layout.
-struct Extras {
-    std::optional<ConformalityReport> quality;
-    std::optional<Atlas> atlas;
-    AtlasChecks checks;
-};
-
-Extras make_extras(const LayoutArguments& a, const SurfaceMesh& mesh, const SurfaceStructure& s) {
-    Extras extras;
-    const bool quality = a.quality || (!a.svg.empty() && needs_quality(parse_picture_kind(a.picture)));
-    if (!s.refinement || (!quality && a.atlas.empty())) return extras;
-    const FinalMetric<double>& metric = *s.metric;
-    if (quality) extras.quality = measure_conformality(mesh, *s.refinement, metric);
-    if (a.atlas.empty()) return extras;
-    AtlasOptions options;
-    options.kind = parse_atlas_kind(a.atlas, s.kappa);
-    options.charts = a.charts;
-    options.cones = s.basis->cones();
-    extras.atlas = make_atlas(mesh.connectivity, *s.refinement, metric, options);
-    extras.checks = check_atlas(*s.refinement, *extras.atlas, options.cones);
-    return extras;
-}
-
-void print_extras(const Extras& extras) {
+void print_extras(const LayoutExtras& extras) {
     if (extras.quality) {
         const ConformalityReport& q = *extras.quality;
         fmt::print(
@@ -141,7 +122,7 @@ void print_extras(const Extras& extras) {
 /// Everything of one component into the result file.
 void store_results(RunStore& store, const std::string& name, const LayoutArguments& a,
                    const LoadedMesh& loaded, const SurfaceMesh& mesh, const FlowOptions& options,
-                   const SurfaceStructure& s, const Extras& extras) {
+                   const SurfaceStructure& s, const LayoutExtras& extras) {
     store.write_item(make_item(name, a.solve.mesh, loaded.content_hash, mesh));
     store.write_flow(make_flow_record(name, s.flow, options, s.seconds.flow));
     store.write_result(make_layout_group(name, mesh, s, copies_of(a, s)));
@@ -190,7 +171,7 @@ int layout(const LayoutArguments& a, const CommonOptions& common) {
             spdlog::error("{}: {}: {}", name, name_of(s.flow.outcome.status), s.flow.message);
         }
         write_files(a, s, c, several);
-        const Extras extras = make_extras(a, mesh, s);
+        const LayoutExtras extras = extras_of(a, mesh, s);
         if (!a.svg.empty() && s.refinement)
             write_picture(a, component_file(a.svg, c, several), mesh, s, extras.quality);
         if (common.json) {

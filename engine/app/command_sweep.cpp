@@ -5,12 +5,8 @@
 
 #include "engine/app/app.h"
 #include "engine/app/commands.h"
-#include "engine/app/isolation/failure_bundle.h"
-#include "engine/app/isolation/isolated_sweep.h"
-#include "engine/app/processor_kind.h"
-#include "engine/app/records.h"
-#include "engine/app/shard_record.h"
 #include "engine/app/sweep_arguments.h"
+#include "engine/app/sweep_job.h"
 #include "engine/app/sweep_run.h"
 
 namespace ricci::app {
@@ -110,12 +106,6 @@ int dry_run(const SweepConfig& config, const std::vector<std::string>& files, co
     return run.any_failure() ? kSomeFailed : kDone;
 }
 
-/// What a run, in this process or in others, leaves behind.
-struct Swept {
-    std::vector<SweepItem> items;
-    bool any_failure = false;
-};
-
 /// Everything, or this machine's part of it.
 SweepPlan make_plan(const SweepConfig& config, const std::vector<std::string>& files,
                     const CommonOptions& common) {
@@ -124,28 +114,6 @@ SweepPlan make_plan(const SweepConfig& config, const std::vector<std::string>& f
     SweepPlan plan(config, files, common.resolved_threads());
     spdlog::info("{}", plan.summary());
     return plan;
-}
-
-Swept run_here(const SweepConfig& config, const std::vector<SweepSource>& sources, const SweepPlan& plan,
-               StoreRecords& records, ProgressLine& progress, std::int64_t max_memory) {
-    SchedulerOptions options;
-    options.threads = config.threads;
-    options.max_memory = max_memory;
-    options.timeout_seconds = config.timeout;
-    options.stop = [] { return caught_signal() != 0; };
-    SweepRun run(config, sources, plan, records, progress);
-    run_sweeps(
-        plan.files().size(), [&](std::size_t i) { return run.open(i); }, run, options);
-    return {run.items(), run.any_failure()};
-}
-
-Swept run_in_children(const SweepConfig& config, const std::vector<SweepSource>& sources,
-                      const SweepPlan& plan, StoreRecords& records, ProgressLine& progress,
-                      std::int64_t max_memory) {
-    IsolatedSweep run(config, sources, plan, records, progress);
-    run_isolated(plan.files().size(), run,
-                 {config.threads, max_memory, config.hang_timeout, [] { return caught_signal() != 0; }});
-    return {run.items(), run.any_failure()};
 }
 
 int report(const std::vector<ItemSummary>& summaries, bool failed, const std::string& output,
@@ -166,45 +134,15 @@ int sweep(const SweepConfig& config, const CommonOptions& common, bool dry) {
     if (files.empty()) throw UsageError("no meshes: name them, or give a configuration with [input] meshes");
     const SweepPlan plan = make_plan(config, files, common);
     if (dry) return dry_run(config, files, plan, common);
-    const std::int64_t max_memory = config.max_memory.empty() ? 0 : parse_bytes(config.max_memory);
-    // A shard cannot be resumed after its inputs have changed so that it would do something else.
-    const std::string fingerprint =
-        to_toml(config, true) + (plan.sharded() ? "# plan " + plan.digest() + "\n" : "");
-    RunInfo info = make_run_info(to_toml(config, false), fingerprint, config.threads);
-    info.processor = processor_kind();
-    RunStore store(config.output, info, config.resume || config.retry_failed);
-    for (const std::string& note : store.notes()) spdlog::warn("{}", note);
     catch_signals();
     ProgressLine progress(common.quiet);
-    StoreRecords records(&store, config.retry_failed, progress);
-    const std::vector<SweepSource> sources = sweep_sources(files);
-    const Swept swept = config.isolate ? run_in_children(config, sources, plan, records, progress, max_memory)
-                                       : run_here(config, sources, plan, records, progress, max_memory);
-    progress.clear();
-    if (const int signal = caught_signal(); signal != 0) {
+    const SweepJob job = sweep_to_file(config, sweep_sources(files), plan, progress, stopped_by_signal);
+    if (job.stopped) {
         spdlog::warn("stopped by a signal; what is finished is in {}.parts: continue with --resume",
                      config.output);
-        return 128 + signal;
+        return 128 + caught_signal();
     }
-    records.forget_mended();
-    const std::vector<ItemSummary> summaries = summaries_of(swept.items, &store);
-    const std::vector<std::string> names = stored_names(swept.items, files, store);
-    const std::size_t unread = names.size() - stored_names(swept.items).size();
-    if (unread > 0 && plan.sharded())
-        throw FileError(
-            fmt::format("{}: {} items that an earlier start of this shard stored cannot be read any more; "
-                        "nothing is assembled",
-                        config.output, unread));
-    if (unread > 0)
-        spdlog::warn("{} items are stored as an earlier start left them: their files cannot be read any more",
-                     unread);
-    std::optional<ShardTable> shard;
-    if (plan.sharded()) shard = make_shard_table(config, plan, swept.items);
-    store.assemble(names, parse_keep(config.keep), shard ? &*shard : nullptr);
-    std::vector<std::string> failed_items;
-    for (const FailureRecord& failure : store.failures()) failed_items.push_back(failure.item);
-    remove_other_bundles(config.output, failed_items);
-    return report(summaries, swept.any_failure, config.output, common);
+    return report(job.summaries, job.any_failure, config.output, common);
 }
 
 }  // namespace
@@ -249,7 +187,8 @@ void add_sweep_options(CLI::App* command, SweepArguments* a) {
     command->add_option("--config", a->config,
                         "TOML file with [input], [solve], [sweep], [run]; options given here win");
     command->add_option("-o,--output", v.output, "Result file (HDF5); default sweep.h5");
-    command->add_option("--vertices", v.vertices, "all, sample:N[:SEED], or a file with vertex numbers");
+    command->add_option("--vertices", v.vertices,
+                        "all, sample:N[:SEED], list:V,V,..., or a file with vertex numbers");
     command->add_option("--resolutions", v.resolutions, "Face counts, or input: 5000,10000,input")
         ->delimiter(',');
     command->add_option(

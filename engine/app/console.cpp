@@ -120,6 +120,10 @@ int caught_signal() {
     return signal_seen;
 }
 
+bool stopped_by_signal() {
+    return caught_signal() != 0;
+}
+
 ProgressLine::ProgressLine(bool quiet)
     : terminal_(stderr_is_terminal()), quiet_(quiet), last_(std::chrono::steady_clock::now()) {}
 

@@ -38,13 +38,19 @@ nlohmann::json finite_or_null(double value);
 void catch_signals();
 /// The signal caught, or 0.
 int caught_signal();
+/// Whether one was: what ends the program's long jobs.
+bool stopped_by_signal();
 
 /// One line of progress with rate and ETA: rewritten in place on a terminal, logged now and then elsewhere.
+/// Whoever has no terminal overrides show().
 class ProgressLine {
   public:
     explicit ProgressLine(bool quiet);
-    ~ProgressLine();
-    void show(const SchedulerProgress& progress);
+    virtual ~ProgressLine();
+    ProgressLine(const ProgressLine&) = delete;
+    ProgressLine& operator=(const ProgressLine&) = delete;
+    /// Called from worker threads, one call at a time.
+    virtual void show(const SchedulerProgress& progress);
     void clear();
 
   private:

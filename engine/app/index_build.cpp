@@ -13,6 +13,7 @@
 #include "engine/app/shape_record.h"
 #include "engine/app/solve_arguments.h"
 #include "engine/app/sweep_config.h"
+#include "engine/flow/cancellation.h"
 #include "engine/sweep/task_queue.h"
 #include "io/mesh/mesh_file.h"
 #include "io/store/durable.h"
@@ -51,7 +52,9 @@ IndexBuild::IndexBuild(const IndexConfig& config, std::vector<IndexInput> inputs
 void IndexBuild::run(const BuildOptions& build) {
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
-    ProgressLine progress(build.quiet);
+    ProgressLine own(build.quiet);
+    ProgressLine& progress = build.progress != nullptr ? *build.progress : own;
+    stop_ = build.stop;
     // The largest first, so that none of them is alone at the end.
     std::vector<Reading*> order;
     order.reserve(readings_.size());
@@ -65,7 +68,7 @@ void IndexBuild::run(const BuildOptions& build) {
     TaskQueueOptions queue;
     queue.threads = build.threads;
     queue.max_memory = build.max_memory;
-    queue.stop = [] { return caught_signal() != 0; };
+    queue.stop = stop_;
     const auto work = [&](std::size_t task) {
         if (!read(*order[task])) return false;
         const std::lock_guard lock(mutex_);
@@ -113,12 +116,12 @@ bool IndexBuild::describe(Reading& reading, std::string bytes) {
     for (std::int32_t c = 0; c < components; ++c) {
         if (!claim(reading.hash, c)) continue;  // a file with the same bytes is under way, or known
         fault_point("describe", shape_name(inputs_[reading.input].file, c, components));
+        const CancellationScope scope(stop_);
         ShapeOptions options = options_;
-        options.flow.interrupted = interruption(config_.timeout);
+        options.flow.interrupted = interruption(config_.timeout, stop_);
         ShapeRecord record =
             describe_to_record(loaded.components[static_cast<std::size_t>(c)], options, resolutions_);
-        if (caught_signal() != 0 && record.status != static_cast<std::uint8_t>(Status::converged))
-            return false;
+        if (stop_() && record.status != static_cast<std::uint8_t>(Status::converged)) return false;
         record.hash = reading.hash;
         record.component = c;
         record.components = components;
@@ -153,8 +156,7 @@ void IndexBuild::hand_over(const std::vector<Reading*>& finished) {
 void IndexBuild::run_in_children(const std::vector<Reading*>& order, const BuildOptions& build,
                                  ProgressLine& progress) {
     IsolatedIndex work(*this, order, build.output, progress);
-    run_isolated(order.size(), work,
-                 {build.threads, build.max_memory, build.hang_timeout, [] { return caught_signal() != 0; }});
+    run_isolated(order.size(), work, {build.threads, build.max_memory, build.hang_timeout, build.stop});
     work.settle();
     progress.clear();
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <set>
 #include <string>
@@ -27,6 +28,8 @@ struct BuildOptions {
     bool isolate = false;         // a child process per file
     double hang_timeout = 600.0;  // seconds without a sign of life, where isolated
     std::string output;           // of the index; reproducers lie beside it
+    std::function<bool()> stop = stopped_by_signal;
+    ProgressLine* progress = nullptr;  // null: one of its own
 };
 
 /// What became of one shape, or of a file that gave none.
@@ -45,8 +48,8 @@ class IndexBuild {
   public:
     IndexBuild(const IndexConfig& config, std::vector<IndexInput> inputs, IndexStore& store);
 
-    /// Reads and describes what is not known. Returns early on a signal (caught_signal()); what is finished
-    /// is durable then. Throws FileError when the store cannot be written.
+    /// Reads and describes what is not known. Returns early when it is stopped; what is finished is durable
+    /// then. Throws FileError when the store cannot be written.
     void run(const BuildOptions& options);
 
     /// After run(): entries and failures for IndexStore::assemble(), in the order of the inputs.
@@ -79,6 +82,7 @@ class IndexBuild {
 
     IndexConfig config_;
     ShapeOptions options_;
+    std::function<bool()> stop_;
     std::vector<Index> resolutions_;
     std::vector<IndexInput> inputs_;
     IndexStore* store_;

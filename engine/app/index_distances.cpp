@@ -124,8 +124,7 @@ int index_distances(const IndexArguments& a, const CommonOptions& common) {
     for (const IndexBucket& bucket : buckets) {
         TypeDistances d;
         with_thread_limit(common.resolved_threads(), [&] {
-            d = measure_distances(bucket, metric, linkage,
-                                  a.clusters > 0 ? static_cast<std::size_t>(a.clusters) : 1);
+            d = measure_distances(bucket, metric, linkage, static_cast<std::size_t>(a.clusters));
         });
         if (d.names.empty()) {
             spdlog::warn("{}: no shape has {}", d.type, a.metric);

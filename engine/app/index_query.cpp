@@ -10,10 +10,7 @@
 
 #include "engine/app/app.h"
 #include "engine/app/index_commands.h"
-#include "engine/app/index_vectors.h"
-#include "engine/app/shape_record.h"
-#include "engine/app/solve_arguments.h"
-#include "engine/app/sweep_config.h"
+#include "engine/app/index_search.h"
 #include "io/mesh/mesh_file.h"
 #include "io/store/durable.h"
 #include "io/store/shape_index.h"
@@ -28,106 +25,7 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// A shape of one topological type that neighbours are sought of.
-struct Query {
-    std::string name;
-    Index genus = 0, boundaries = 0;
-    std::uint64_t hash = 0;
-    std::vector<double> vector;
-    double seconds = 0.0;  // of its own description
-};
-
-/// Types of the index, each read and made searchable when first asked for.
-class IndexSearch {
-  public:
-    IndexSearch(const std::string& path, ShapeMetric metric) : reader_(path), metric_(metric) {}
-
-    struct Type {
-        IndexBucket bucket;
-        NeighbourSearch search;
-    };
-    [[nodiscard]] const IndexReader& reader() const { return reader_; }
-    [[nodiscard]] ShapeMetric metric() const { return metric_; }
-    /// None when the index holds no shape of this type.
-    const Type* type(Index genus, Index boundaries) {
-        const std::array<Index, 2> key{genus, boundaries};
-        if (const auto found = types_.find(key); found != types_.end()) return &found->second;
-        std::optional<IndexBucket> bucket = reader_.bucket(genus, boundaries);
-        if (!bucket) return nullptr;
-        ShapeVectors vectors = shape_vectors(*bucket, metric_);
-        return &types_.emplace(key, Type{std::move(*bucket), NeighbourSearch(std::move(vectors))})
-                    .first->second;
-    }
-
-  private:
-    IndexReader reader_;
-    ShapeMetric metric_;
-    std::map<std::array<Index, 2>, Type> types_;
-};
-
-/// The shapes of a file with these bytes as the index has them; empty unless it has all.
-std::vector<Query> known_shapes(IndexSearch& index, const std::string& file, std::uint64_t hash) {
-    std::vector<Query> queries;
-    std::size_t components = 1;
-    for (const auto& [genus, boundaries] : index.reader().types()) {
-        const IndexSearch::Type& type = *index.type(genus, boundaries);
-        for (std::size_t i = 0; i < type.bucket.files.size(); ++i) {
-            if (type.bucket.hash[i] != hash) continue;
-            const std::span<const double> row = type.search.shapes().row(i);
-            components = static_cast<std::size_t>(type.bucket.components[i]);
-            const std::string name = shape_name(file, type.bucket.component[i], type.bucket.components[i]);
-            const bool seen =
-                std::any_of(queries.begin(), queries.end(), [&](const Query& q) { return q.name == name; });
-            if (!seen) queries.push_back({name, genus, boundaries, hash, {row.begin(), row.end()}, 0.0});
-        }
-    }
-    if (queries.size() != components) return {};
-    std::sort(queries.begin(), queries.end(), [](const Query& a, const Query& b) { return a.name < b.name; });
-    return queries;
-}
-
-/// Describes the shapes of a file; those that fail are logged and left out, which `failed` tells.
-std::vector<Query> describe_file(const std::string& file, std::string bytes, std::uint64_t hash,
-                                 const IndexConfig& config, ShapeMetric metric, bool& failed) {
-    const LoadedMesh loaded = load_mesh_bytes(file, std::move(bytes), parse_repair(config.repair));
-    for (const Defect& error : loaded.report.errors) spdlog::error("{}: {}", file, error.message);
-    failed = failed || !loaded.report.errors.empty();
-    std::vector<Query> queries;
-    const auto components = static_cast<std::int32_t>(loaded.components.size());
-    for (std::int32_t c = 0; c < components; ++c) {
-        const auto start = Clock::now();
-        ShapeOptions options = shape_options(config);
-        options.coordinates = metric == ShapeMetric::coordinates;
-        options.flow.interrupted = interruption(config.timeout);
-        const ShapeRecord shape = describe_to_record(loaded.components[static_cast<std::size_t>(c)], options,
-                                                     parse_resolutions(config.resolutions));
-        const std::string name = shape_name(file, c, components);
-        if (shape.status != static_cast<std::uint8_t>(Status::converged)) {
-            spdlog::error("{}: {}: {}", name, name_of(static_cast<Status>(shape.status)), shape.message);
-            failed = true;
-            continue;
-        }
-        queries.push_back({name, shape.genus, shape.boundaries, hash,
-                           metric == ShapeMetric::spectrum ? shape.fingerprint : shape.coordinates,
-                           seconds_since(start)});
-    }
-    return queries;
-}
-
-/// The nearest entries; with `others`, none with the query's own bytes.
-std::vector<Neighbour> neighbours_of(const Query& query, const IndexSearch::Type& type, std::size_t count,
-                                     bool others) {
-    if (query.vector.empty()) return {};
-    std::size_t same = 0;
-    for (const std::uint64_t hash : type.bucket.hash) same += others && hash == query.hash ? 1 : 0;
-    std::vector<Neighbour> found = type.search.nearest(query.vector, count + same);
-    if (others)
-        std::erase_if(found, [&](const Neighbour& n) { return type.bucket.hash[n.shape] == query.hash; });
-    if (found.size() > count) found.resize(count);
-    return found;
-}
-
-void print_answer(const Query& query, const IndexSearch::Type* type, const std::vector<Neighbour>& found,
+void print_answer(const IndexQuery& query, const IndexSearch::Type* type, const std::vector<Neighbour>& found,
                   double seconds, const CommonOptions& common) {
     nlohmann::json list = nlohmann::json::array();
     const std::string type_of_query = type_name(query.genus, query.boundaries);
@@ -174,24 +72,23 @@ nlohmann::json to_json(const IndexBucket& bucket, const std::array<double, 4>& s
 int index_query(const IndexArguments& a, const CommonOptions& common) {
     const auto opening = Clock::now();
     IndexSearch index(a.index, parse_shape_metric(a.metric));
-    const IndexConfig config = index_config_from_toml(index.reader().info().fingerprint);
     double opened = seconds_since(opening);  // and read: counts for the next query that is answered
-    if (index.reader().descriptor_version() != kDescriptorVersion)
-        throw UsageError(a.index + ": its shapes were described by another version of ricci; build it anew");
     catch_signals();
     const std::vector<std::string> files = expand_inputs(a.paths);
     bool failed = false;
     for (const std::string& file : files) {
-        std::vector<Query> queries;
+        std::vector<IndexQuery> queries;
         try {
             std::string bytes = read_text(file);
             const std::uint64_t hash = checksum_of(std::string_view(bytes));
             const auto start = Clock::now();
-            queries = known_shapes(index, file, hash);
+            queries = index.known_shapes(file, hash);
             opened += seconds_since(start);
             if (queries.empty())
                 with_thread_limit(common.resolved_threads(), [&] {
-                    queries = describe_file(file, std::move(bytes), hash, config, index.metric(), failed);
+                    const LoadedMesh loaded =
+                        load_mesh_bytes(file, std::move(bytes), parse_repair(index.config().repair));
+                    queries = index.describe(file, loaded, stopped_by_signal, failed);
                 });
         } catch (const FileError& e) {
             if (files.size() == 1) throw;
@@ -199,7 +96,7 @@ int index_query(const IndexArguments& a, const CommonOptions& common) {
             failed = true;
         }
         if (caught_signal() != 0) return 128 + caught_signal();
-        for (const Query& query : queries) {
+        for (const IndexQuery& query : queries) {
             const auto start = Clock::now();
             const IndexSearch::Type* type = index.type(query.genus, query.boundaries);
             std::vector<Neighbour> found;

@@ -4,11 +4,14 @@
 // program runs one worker per processor already and has no OpenMP region of its own, so it gives the entry
 // point a definition that calls the region's body directly: a team of one.
 //
-// For this executable only: never part of a library, whose users may have parallel regions that are to be
+// For this executable, and for the Python module, where it is found by the libraries that are loaded with the
+// module and by nobody else: never part of a library, whose users may have parallel regions that are to be
 // parallel.
 #ifdef RICCI_HAS_CHOLMOD
 
-extern "C" void GOMP_parallel(void (*body)(void*), void* data, unsigned /*threads*/, unsigned /*flags*/) {
+extern "C" __attribute__((visibility("default"))) void GOMP_parallel(void (*body)(void*), void* data,
+                                                                     unsigned /*threads*/,
+                                                                     unsigned /*flags*/) {
     body(data);
 }
 

@@ -7,6 +7,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "engine/flow/cancellation.h"
 #include "engine/remesh/resample.h"
 
 namespace ricci::app {
@@ -90,6 +91,8 @@ ShapeRecord describe_to_record(const SurfaceMesh& mesh, const ShapeOptions& opti
                                const std::vector<Index>& resolutions) {
     try {
         return describe_all(mesh, options, resolutions);
+    } catch (const Cancelled& e) {
+        return failed(Status::cancelled, e.what());
     } catch (const std::invalid_argument& e) {
         return failed(Status::invalid_input, e.what());
     } catch (const std::bad_alloc&) {

@@ -124,10 +124,10 @@ SurfaceMesh densified(const SurfaceMesh& mesh, const FlowOptions& options) {
     return dense;
 }
 
-std::function<std::optional<Status>()> interruption(double timeout) {
+std::function<std::optional<Status>()> interruption(double timeout, std::function<bool()> stop) {
     using Clock = std::chrono::steady_clock;
-    return [timeout, start = Clock::now()]() -> std::optional<Status> {
-        if (caught_signal() != 0) return Status::cancelled;
+    return [timeout, stop = std::move(stop), start = Clock::now()]() -> std::optional<Status> {
+        if (stop()) return Status::cancelled;
         const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
         if (timeout > 0.0 && seconds > timeout) return Status::timeout;
         return std::nullopt;

@@ -47,7 +47,8 @@ void require_one_component(const LoadedMesh& loaded, const FlowOptions& options)
 /// The component with its cones refined around (--densify).
 SurfaceMesh densified(const SurfaceMesh& mesh, const FlowOptions& options);
 
-/// Ends a solve on a signal, or `timeout` seconds from now (0: never).
-std::function<std::optional<Status>()> interruption(double timeout);
+/// Ends a solve when `stop` says so (a signal was caught), or `timeout` seconds from now (0: never).
+std::function<std::optional<Status>()> interruption(double timeout,
+                                                    std::function<bool()> stop = stopped_by_signal);
 
 }  // namespace ricci::app

@@ -97,6 +97,16 @@ T whole_number(const std::string& text, const std::string& what) {
     return value;
 }
 
+std::vector<Index> listed_vertices(const std::string& text) {
+    std::vector<Index> list;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        list.push_back(whole_number<Index>(text.substr(begin, end - begin), "vertices list:V,V,..."));
+        begin = end + 1;
+    }
+    return list;
+}
+
 }  // namespace
 
 SweepConfig read_sweep_config(const std::string& path) {
@@ -232,7 +242,7 @@ VertexChoice parse_vertices(const std::string& text) {
         return choice;
     }
     choice.kind = VertexChoice::Kind::list;
-    choice.list = read_vertex_list(text);
+    choice.list = text.starts_with("list:") ? listed_vertices(text.substr(5)) : read_vertex_list(text);
     return choice;
 }
 

@@ -22,7 +22,7 @@ struct SweepConfig {
     bool densify = false;
     std::string solver = "lanes";
     std::string precision = "auto";
-    std::string vertices = "all";                      // all | sample:N[:SEED] | FILE
+    std::string vertices = "all";                      // all | sample:N[:SEED] | list:V,V,... | FILE
     std::vector<std::string> resolutions = {"input"};  // face counts or "input"
     std::string keep = "best,worst";                   // none | best | worst | best,worst | all | K
     std::string output = "sweep.h5";

@@ -16,19 +16,28 @@ std::string stem_of(const std::string& file) {
     return name.stem().string();
 }
 
+std::string SweepSource::stem() const {
+    return loaded ? loaded->stem : stem_of(file);
+}
+
 std::string SweepSource::suffix() const {
-    return name.substr(stem_of(file).size());
+    return name.substr(stem().size());
 }
 
 std::vector<SweepSource> sweep_sources(const std::vector<std::string>& files) {
-    std::map<std::string, int> uses;
     std::vector<SweepSource> sources;
-    for (const std::string& file : files) {
-        const std::string stem = stem_of(file);
-        const int use = ++uses[stem];
-        sources.push_back({file, use == 1 ? stem : fmt::format("{}~{}", stem, use)});
-    }
+    for (const std::string& file : files) sources.push_back({file, ""});
+    name_sources(sources);
     return sources;
+}
+
+void name_sources(std::vector<SweepSource>& sources) {
+    std::map<std::string, int> uses;
+    for (SweepSource& source : sources) {
+        const std::string stem = source.stem();
+        const int use = ++uses[stem];
+        source.name = use == 1 ? stem : fmt::format("{}~{}", stem, use);
+    }
 }
 
 std::vector<ItemSummary> summaries_of(const std::vector<SweepItem>& items, const RunStore* store) {

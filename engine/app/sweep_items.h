@@ -3,25 +3,31 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/flow/status.h"
+#include "io/mesh/mesh_file.h"
 #include "io/store/run_store.h"
 #include "io/store/shard_table.h"
 
 namespace ricci::app {
 
-/// A mesh file of a sweep. Its name is the file's stem, with ~2, ~3 for further files of the same stem, in
-/// the order of the input: failures of the file as a whole go by it.
+/// A mesh file of a sweep, or a mesh in memory that came from one. Its name is the file's stem, with ~2, ~3
+/// for further files of the same stem, in the order of the input: failures of the file as a whole go by it.
 struct SweepSource {
     std::string file, name;
+    std::shared_ptr<const LoadedMesh> loaded{};  // null: to be read from the file
 
+    [[nodiscard]] std::string stem() const;
     /// "", "~2", ...
     [[nodiscard]] std::string suffix() const;
 };
 std::vector<SweepSource> sweep_sources(const std::vector<std::string>& files);
+/// The same where some are in memory: gives all of them their names.
+void name_sources(std::vector<SweepSource>& sources);
 
 /// File name without folder, .gz and the format's suffix.
 std::string stem_of(const std::string& file);

@@ -91,7 +91,7 @@ std::vector<SweepTask> SweepRun::open(std::size_t i) {
     LoadedMesh loaded;
     try {
         fault_point("load", source.name);
-        loaded = load_mesh(source.file, repair_);
+        loaded = source.loaded ? *source.loaded : load_mesh(source.file, repair_);
     } catch (const std::exception& e) {
         record_failure(add_item(stage, false, place), status_of(e), message_of(e));
         return {};

@@ -37,7 +37,7 @@ TypeDistances measure_distances(const IndexBucket& bucket, ShapeMetric metric, L
     d.matrix = distance_matrix(vectors, true);
     d.tree = cluster_shapes(d.matrix, linkage);
     d.order = leaf_order(d.tree);
-    d.clusters = flat_clusters(d.tree, clusters);
+    d.clusters = flat_clusters(d.tree, clusters > 0 ? clusters : 1);
     return d;
 }
 

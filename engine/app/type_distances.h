@@ -18,7 +18,7 @@ struct TypeDistances {
     std::vector<std::size_t> order, clusters;
 };
 
-/// Distances of all pairs, their tree, and so many clusters. Shapes without the vector asked for (no
+/// Distances of all pairs, their tree, and so many clusters (0: one). Shapes without the vector asked for (no
 /// coordinates) are left out, which is logged. Uses as many threads as the caller may.
 TypeDistances measure_distances(const IndexBucket& bucket, ShapeMetric metric, Linkage linkage,
                                 std::size_t clusters);

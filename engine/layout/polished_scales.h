@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "engine/flow/cancellation.h"
 #include "engine/layout/final_metric.h"
 #include "kernels/extended.h"
 
@@ -29,6 +30,7 @@ struct PolishedScales {
 template <class Level>
 void climb_precision(int max_digits, Level&& level) {
     const auto step = [&]<class Real>(int digits, Real) {
+        cancellation_point();
         return digits <= max_digits && level(digits, Real());
     };
     step(19, 0.0L) && step(50, Extended<50>()) && step(100, Extended<100>()) && step(200, Extended<200>()) &&

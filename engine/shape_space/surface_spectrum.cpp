@@ -5,6 +5,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "engine/flow/cancellation.h"
 #include "engine/layout/transport.h"
 #include "engine/shape_space/annulus.h"
 #include "engine/shape_space/drawn_geodesic.h"
@@ -69,6 +70,7 @@ void hyperbolic(const SurfaceMesh& mesh, const SurfaceSpectrumOptions& options, 
         s.geodesics.push_back(
             {found.geodesics[k].length, b < 0 ? b : component[static_cast<std::size_t>(b)], "", {}});
         if (!options.words && !(options.draw && wanted(options, k))) continue;
+        cancellation_point();
         try {
             describe(s.structure, options, k,
                      draw_geodesic(s.structure, mesh.connectivity, surface, found.geodesics[k]), s);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/flow/cancellation.h"
 #include "engine/shape_space/coarse_surface.h"
 
 namespace ricci {
@@ -17,7 +18,7 @@ class Unfolding {
 
     /// Calls visit(vertex, isometry) for every lift of a vertex within `distance` of that of `from`, itself
     /// left out; the isometry takes the frame of the vertex to that of the lift, in the frame of `from`.
-    /// Stops and returns false where more than `budget` edges would be crossed.
+    /// Stops and returns false where more than `budget` edges would be crossed. Throws Cancelled.
     template <class Visit>
     bool visit(Index from, double distance, std::int64_t budget, Visit&& visit);
 
@@ -96,6 +97,7 @@ bool Unfolding::visit(Index from, double distance, std::int64_t budget, Visit&& 
         const Index t = c.twin[at(w.halfedge)];
         if (t == kNoTwin || beyond(w, sine)) continue;
         if (++crossed_ > last) return false;
+        cancellation_point(crossed_);
         const Index ac = next_halfedge(t), cb = prev_halfedge(t);
         const Isometry<double> apex = compose(-1, w.tail, s.step[at(ac)]);
         const Direction u = towards(apex);

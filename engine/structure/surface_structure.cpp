@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/flow/cancellation.h"
 #include "engine/layout/final_metric.inl"
 #include "engine/layout/polished_scales.h"
 
@@ -97,10 +98,12 @@ SurfaceStructure make_surface_structure(const SurfaceMesh& mesh, FlowResult flow
     Stopwatch watch;
     s.flow = std::move(flow);
     s.kappa = curvature_sign(s.flow.geometry);
+    cancellation_point();
     if (s.flow.outcome.status != Status::converged) return s;
     if (s.kappa == 0) s.log_scale = -0.5 * std::log(s.flow.area);
     s.refinement.emplace(refinement_of_flow(mesh, s.flow, options.flow.delaunay, s.log_scale));
     s.seconds.refinement = watch.lap();
+    cancellation_point();
     const std::vector<double> length =
         s.flow.packing ? s.flow.edge_length : final_edge_lengths(mesh, s.flow.conformal_factor, s.kappa);
     s.basis.emplace(
@@ -108,6 +111,7 @@ SurfaceStructure make_surface_structure(const SurfaceMesh& mesh, FlowResult flow
     s.canonical = make_canonical_basis(s.basis->relator(), s.basis->loops(), s.basis->punctures());
     s.cut = make_cut_graph(mesh.connectivity, *s.basis);
     s.seconds.topology = watch.lap();
+    cancellation_point();
     PolishedScales scales;
     // The metric is solved anew in more digits where it is to be smooth everywhere.
     const bool smooth = std::all_of(s.flow.target_curvature.begin(), s.flow.target_curvature.end(),
@@ -119,6 +123,7 @@ SurfaceStructure make_surface_structure(const SurfaceMesh& mesh, FlowResult flow
     s.group = make_surface_group(s.kappa, *s.refinement, mesh.connectivity, *s.basis, s.canonical,
                                  {options.goal, digits, &scales});
     s.seconds.group = watch.lap();
+    cancellation_point();
     s.layout = make_surface_layout(s.kappa, *s.refinement, mesh.connectivity, *s.basis, s.cut,
                                    {options.seed_face, options.goal, digits, &scales});
     count_orientations(*s.refinement, s.layout);

@@ -46,7 +46,8 @@ std::vector<Index> cone_vertices(const SurfaceMesh& mesh, const FlowResult& flow
 /// crossed is measured as if it were in the final triangulation). // 3F
 std::vector<double> final_edge_lengths(const SurfaceMesh& mesh, std::span<const double> u, int kappa);
 
-/// `mesh` must outlive the result. Throws std::invalid_argument for options that do not fit the surface.
+/// `mesh` must outlive the result. Throws std::invalid_argument for options that do not fit the surface,
+/// Cancelled between its stages.
 SurfaceStructure make_surface_structure(const SurfaceMesh& mesh, const StructureOptions& options);
 SurfaceStructure make_surface_structure(SurfaceMesh&&, const StructureOptions&) = delete;
 

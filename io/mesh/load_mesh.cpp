@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
+#include <new>
 #include <string_view>
 #include <utility>
 
@@ -212,6 +214,40 @@ RepairOptions parse_repair(const std::string& text) {
         if (rest.empty()) throw std::invalid_argument("--repair: a word is missing after the last comma");
     }
     return options;
+}
+
+std::uint64_t mesh_hash(std::span<const Point> points, std::span<const Triangle> triangles) {
+    const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), &XXH3_freeState);
+    if (!state) throw std::bad_alloc();
+    XXH3_64bits_reset(state.get());
+    XXH3_64bits_update(state.get(), points.data(), points.size_bytes());
+    XXH3_64bits_update(state.get(), triangles.data(), triangles.size_bytes());
+    return XXH3_64bits_digest(state.get());
+}
+
+LoadedMesh check_mesh(const std::string& name, std::span<const Point> points,
+                      std::span<const Triangle> triangles, const RepairOptions& repair) {
+    LoadedMesh mesh;
+    mesh.report.file = mesh.stem = name;
+    mesh.content_hash = mesh_hash(points, triangles);
+    ParsedFile file;
+    try {
+        file.soup.points.reserve(points.size());
+        for (const Point& point : points) add_point(file, point, 0);
+        file.soup.corners.reserve(3 * triangles.size());
+        file.soup.face_first.reserve(triangles.size() + 1);
+        for (const Triangle& t : triangles) {
+            file.soup.corners.insert(file.soup.corners.end(), t.begin(), t.end());
+            file.soup.end_face();
+        }
+        if (triangles.empty()) throw ContentError("no_faces", 0, "there is no triangle");
+        finish_embedded(file, repair, mesh);
+    } catch (const ContentError& error) {
+        add_content_error(error, file.errors);
+    }
+    mesh.report.notes = file.notes.defects();
+    mesh.report.errors = file.errors.defects();
+    return mesh;
 }
 
 LoadedMesh load_mesh(const std::string& path, const RepairOptions& repair) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -70,6 +71,14 @@ LoadedMesh load_mesh(const std::string& path, const RepairOptions& repair = {});
 /// The same for the bytes of a file in memory; the suffix of `path` tells the format. Throws FileError for
 /// gzip data that cannot be unpacked.
 LoadedMesh load_mesh_bytes(const std::string& path, std::string bytes, const RepairOptions& repair = {});
+
+/// The same for elements in memory: what load_mesh says of a file with these points and triangles, whose stem
+/// is `name`. content_hash is XXH3-64 of the bytes of the points followed by those of the triangles. Corners
+/// may name vertices that there are not: that is reported.
+LoadedMesh check_mesh(const std::string& name, std::span<const Point> points,
+                      std::span<const Triangle> triangles, const RepairOptions& repair = {});
+/// The hash alone.
+std::uint64_t mesh_hash(std::span<const Point> points, std::span<const Triangle> triangles);
 
 /// How many bytes a .gz may unpack to, for this process; 0: the default, the larger of 64 MiB and 200 times
 /// its packed size. At most 16 GiB either way. Real meshes stay far below (bench figures in

@@ -180,6 +180,9 @@ TEST(VertexChoice, SamplesAndLists) {
     EXPECT_EQ(choose_vertices(parse_vertices(folder / "v.txt"), candidates), (std::vector<Index>{3, 7}));
     write_text(folder / "v.txt", "4\n");
     EXPECT_THROW(choose_vertices(parse_vertices(folder / "v.txt"), candidates), std::invalid_argument);
+    EXPECT_EQ(choose_vertices(parse_vertices("list:7,3,7"), candidates), (std::vector<Index>{3, 7}));
+    EXPECT_THROW(parse_vertices("list:"), UsageError);
+    EXPECT_THROW(parse_vertices("list:3,x"), UsageError);
     EXPECT_THROW(parse_vertices("sample:0"), UsageError);
     EXPECT_THROW(parse_vertices("sample:x"), UsageError);
 }
