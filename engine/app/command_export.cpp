@@ -2,12 +2,14 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cmath>
+#include <exception>
 #include <filesystem>
-#include <limits>
+#include <map>
+#include <set>
 
 #include "engine/app/app.h"
 #include "engine/app/commands.h"
+#include "engine/app/handover/handover.h"
 #include "engine/app/pictures/picture_kinds.h"
 #include "engine/app/records.h"
 #include "engine/app/stored_layout.h"
@@ -17,62 +19,6 @@
 namespace ricci::app {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-/// Everything per vertex that an item holds; NaN where a vertex has no value.
-std::vector<PointField> fields_of(const StoredItem& stored) {
-    const std::size_t vertices = stored.item.points.size();
-    std::vector<PointField> fields;
-    if (stored.sweep) {
-        PointField distortion{"area_distortion", std::vector<double>(vertices, kNone)}, steps = distortion,
-                                                                                        residual = distortion;
-        steps.name = "newton_iterations";
-        residual.name = "residual_max";
-        for (const SweepRow& row : stored.sweep->rows) {
-            const auto v = static_cast<std::size_t>(row.vertex);
-            distortion.values[v] = row.area_distortion;
-            steps.values[v] = row.newton_iterations;
-            residual.values[v] = row.residual_max;
-        }
-        fields.push_back(std::move(distortion));
-        fields.push_back(std::move(steps));
-        fields.push_back(std::move(residual));
-        for (const KeptFactor& kept : stored.sweep->kept) {
-            if (kept.vertex == stored.sweep->best)
-                fields.push_back({"best_conformal_factor", kept.conformal_factor});
-            if (kept.vertex == stored.sweep->worst)
-                fields.push_back({"worst_conformal_factor", kept.conformal_factor});
-        }
-    }
-    if (stored.flow) {
-        fields.push_back({"conformal_factor", stored.flow->conformal_factor});
-        fields.push_back({"curvature", stored.flow->curvature});
-        fields.push_back({"target_curvature", stored.flow->target_curvature});
-    }
-    return fields;
-}
-
-std::string file_name(std::string item) {
-    std::replace_if(
-        item.begin(), item.end(), [](char c) { return c == '/' || c == '\\' || c == ' '; }, '_');
-    return item;
-}
-
-const ResultGroup* find_result(const StoredItem& stored, const std::string& kind) {
-    const auto found = std::find_if(stored.results.begin(), stored.results.end(),
-                                    [&](const ResultGroup& group) { return group.kind == kind; });
-    return found == stored.results.end() ? nullptr : &*found;
-}
-
-/// The layout of an item. Throws UsageError where it has none.
-StoredLayout layout_of(const StoredItem& stored) {
-    const ResultGroup* found = find_result(stored, "layout");
-    if (found == nullptr)
-        throw UsageError(
-            fmt::format("{} has no layout: `ricci layout MESH -o FILE` makes one", stored.item.name));
-    return read_layout_group(*found, stored.item.triangles.size());
-}
-
 /// An array of doubles of a group; empty where there is none.
 std::vector<double> doubles_of(const ResultGroup& group, const std::string& path) {
     for (const ResultArray& array : group.arrays)
@@ -81,8 +27,10 @@ std::vector<double> doubles_of(const ResultGroup& group, const std::string& path
     return {};
 }
 
-void export_picture(const std::string& file, const StoredItem& item, PictureKind kind, LayoutModel model) {
-    const StoredLayout stored = layout_of(item);
+void export_picture(const std::string& file, const ItemSource& item_source, PictureKind kind,
+                    LayoutModel model) {
+    const StoredLayout& stored = item_source.layout();
+    const StoredItem& item = item_source.item();
     const SurfaceMesh mesh = surface_of(item.item);
     PictureSource source;
     source.layout = &stored;
@@ -108,85 +56,211 @@ void export_picture(const std::string& file, const StoredItem& item, PictureKind
     draw_picture(kind, model, source).save(file);
 }
 
-int export_run(const std::string& path, const std::string& output, const std::string& only,
-               const std::string& model, const std::string& picture, const CommonOptions& common) {
-    const StoredRun run = read_run(path);
-    const auto suffix = std::filesystem::path(output).extension().string();
-    if (suffix == ".csv") {
-        export_csv(output, run);
-        if (common.json)
-            print_json({{"file", output}});
-        else
-            fmt::print("wrote {}\n", output);
-        return kDone;
-    }
-    if (suffix != ".vtu" && suffix != ".vtkhdf" && suffix != ".obj" && suffix != ".svg")
-        throw UsageError(fmt::format("'{}': export writes .vtu, .vtkhdf, .obj, .svg and .csv", output));
-    const PictureKind picture_kind = parse_picture_kind(picture);
-    const LayoutModel layout_model = parse_layout_model(model);
-    std::vector<const StoredItem*> items;
-    for (const StoredItem& item : run.items)
-        if (only.empty() || item.item.name == only) items.push_back(&item);
-    if (items.empty())
-        throw UsageError(fmt::format("{} holds no item{}", path, only.empty() ? "" : " named " + only));
+struct ExportArguments {
+    std::string path, output, item, model = "auto", picture = "domain", program;
+    HandoverOptions handover;
+};
+
+enum class Format : std::uint8_t { csv, vtk, multiblock, gltf, obj, npz, svg, script };
+
+Format format_of(const std::string& output) {
+    static const std::map<std::string, Format> formats = {
+        {".csv", Format::csv},   {".vtu", Format::vtk},   {".vtp", Format::vtk}, {".vtkhdf", Format::vtk},
+        {".vtm", Format::multiblock}, {".glb", Format::gltf}, {".gltf", Format::gltf}, {".obj", Format::obj},
+        {".npz", Format::npz},   {".svg", Format::svg},   {".py", Format::script}};
+    const auto found = formats.find(std::filesystem::path(output).extension().string());
+    if (found == formats.end())
+        throw UsageError(fmt::format("'{}': export writes .vtu, .vtp, .vtm, .vtkhdf, .glb, .gltf, .obj, .npz, "
+                                     ".svg, .csv, and .blender.py, .polyscope.py, .paraview.py",
+                                     output));
+    return found->second;
+}
+
+/// Names of items as parts of file names, no two alike.
+std::vector<std::string> file_names(const std::vector<const StoredItem*>& items) {
+    std::set<std::string> taken;
+    std::vector<std::string> names;
     for (const StoredItem* item : items) {
-        // One file per item: OUT.vtu for one, OUT.<item>.vtu for several.
-        std::string name = output;
-        if (items.size() > 1)
-            name =
-                output.substr(0, output.size() - suffix.size()) + "." + file_name(item->item.name) + suffix;
-        if (item->item.points.empty() && suffix != ".svg") {
-            spdlog::warn("{} is an intrinsic surface without points: not exported", item->item.name);
+        std::string name = item->item.name;
+        std::replace_if(
+            name.begin(), name.end(),
+            [](char c) { return c == '/' || c == '\\' || static_cast<unsigned char>(c) <= ' '; }, '_');
+        if (name == "." || name == "..") name += '_';
+        std::string unique = name;
+        for (int k = 2; !taken.insert(unique).second; ++k) unique = fmt::format("{}~{}", name, k);
+        names.push_back(unique);
+    }
+    return names;
+}
+
+/// OUT.vtu for one item, OUT.<item>.vtu for several; OUT.<item>.blender.py.
+std::string output_of(const std::string& output, const std::string& item) {
+    const std::filesystem::path path(output);
+    std::string suffix = path.extension().string();
+    const std::string inner = std::filesystem::path(path).replace_extension().extension().string();
+    if (suffix == ".py" && (inner == ".blender" || inner == ".polyscope" || inner == ".paraview"))
+        suffix = inner + suffix;
+    return output.substr(0, output.size() - suffix.size()) + "." + item + suffix;
+}
+
+void write_item(Format format, const std::string& file, const ItemSource& source, const ExportArguments& a) {
+    switch (format) {
+        case Format::vtk:
+            return write_vtk(file, source, a.handover);
+        case Format::multiblock:
+            return write_multiblock(file, {&source}, {""}, a.handover);
+        case Format::gltf:
+            return write_gltf(file, source, a.handover);
+        case Format::obj:
+            return write_obj(file, source, a.handover);
+        case Format::npz:
+            return write_npz(file, source, a.handover);
+        case Format::script:
+            return write_script(file, script_kind(a.output, a.program), source, a.handover);
+        case Format::svg:
+        case Format::csv:
+            break;
+    }
+    export_picture(file, source, parse_picture_kind(a.picture), a.handover.blocks.model);
+}
+
+void report(const std::string& item, const std::string& file, const CommonOptions& common) {
+    if (common.json) {
+        nlohmann::json object = {{"file", file}};
+        if (!item.empty()) object["item"] = item;
+        print_json(object);
+    } else {
+        fmt::print("wrote {}\n", file);
+    }
+}
+
+/// One file for each item. What one of several lacks keeps none of the others from being written.
+int export_apart(Format format, const StoredRun& run, const std::vector<const StoredItem*>& items,
+                 const ExportArguments& a, const CommonOptions& common) {
+    const std::vector<std::string> names = file_names(items);
+    std::exception_ptr last;
+    std::size_t failed = 0;
+    const auto note = [&](const std::exception& error) {
+        last = std::current_exception();
+        ++failed;
+        if (items.size() > 1) spdlog::error("{}", error.what());
+    };
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        const std::string file = items.size() > 1 ? output_of(a.output, names[i]) : a.output;
+        try {
+            write_item(format, file, ItemSource(run.info, *items[i], a.handover.blocks), a);
+            report(items[i]->item.name, file, common);
+        } catch (const UsageError& error) {
+            note(error);
+        } catch (const FileError& error) {
+            note(error);
+        } catch (const std::invalid_argument& error) {
+            note(error);
+        }
+    }
+    if (failed == items.size()) {
+        if (items.size() > 1) throw UsageError("nothing was written");
+        std::rethrow_exception(last);
+    }
+    return failed > 0 ? kSomeFailed : kDone;
+}
+
+/// All items under one head.
+int export_together(const StoredRun& run, const std::vector<const StoredItem*>& items,
+                    const ExportArguments& a, const CommonOptions& common) {
+    std::vector<std::unique_ptr<ItemSource>> owned;
+    std::vector<const ItemSource*> sources;
+    std::vector<const StoredItem*> shown;
+    for (const StoredItem* item : items) {
+        auto source = std::make_unique<ItemSource>(run.info, *item, a.handover.blocks);
+        try {
+            const std::vector<std::string> there = blocks_of(*source);
+            if (there.empty())
+                throw UsageError(item->item.name + " is an intrinsic surface without a layout: nothing to show");
+            for (const std::string& name : wanted_blocks(*source, a.handover.what, there))
+                require_block(name, *source);
+        } catch (const UsageError& error) {
+            if (items.size() == 1) throw;
+            spdlog::error("{}", error.what());
             continue;
         }
-        if (suffix == ".svg") {
-            export_picture(name, *item, picture_kind, layout_model);
-        } else if (suffix == ".obj") {
-            const StoredLayout stored = layout_of(*item);
-            save_textured(name, textured_surface(stored.refinement, stored.layout, layout_model));
-        } else if (suffix == ".vtu") {
-            export_vtu(name, item->item, fields_of(*item));
-        } else {
-            export_vtkhdf(name, item->item, fields_of(*item));
-        }
-        if (common.json)
-            print_json({{"item", item->item.name}, {"file", name}});
-        else
-            fmt::print("wrote {}\n", name);
+        sources.push_back(source.get());
+        shown.push_back(item);
+        owned.push_back(std::move(source));
     }
-    return kDone;
+    if (sources.empty()) throw UsageError("nothing was written");
+    write_multiblock(a.output, sources, file_names(shown), a.handover);
+    report("", a.output, common);
+    return shown.size() < items.size() ? kSomeFailed : kDone;
+}
+
+int export_run(ExportArguments a, const CommonOptions& common) {
+    const Format format = format_of(a.output);
+    a.handover.blocks.model = parse_layout_model(a.model);
+    parse_picture_kind(a.picture);
+    if (format == Format::script)
+        script_kind(a.output, a.program);
+    else if (!a.program.empty())
+        throw UsageError("--for goes with a .py");
+    for (const std::string& name : a.handover.what) require_block_name(name);
+    const StoredRun run = read_run(a.path);
+    if (format == Format::csv) {
+        export_csv(a.output, run);
+        report("", a.output, common);
+        return kDone;
+    }
+    std::vector<const StoredItem*> items;
+    for (const StoredItem& item : run.items)
+        if (a.item.empty() || item.item.name == a.item) items.push_back(&item);
+    if (items.empty())
+        throw UsageError(fmt::format("{} holds no item{}", a.path, a.item.empty() ? "" : " named " + a.item));
+    if (format == Format::multiblock && items.size() > 1) return export_together(run, items, a, common);
+    return export_apart(format, run, items, a, common);
 }
 
 }  // namespace
 
 void add_export(CLI::App& app, CommonOptions& common, Action& action) {
     auto* command = app.add_subcommand(
-        "export",
-        "Convert results: .vtu and .vtkhdf for ParaView, .obj and .svg of a layout, .csv for tables");
-    struct Arguments {
-        std::string path, output, item, model = "auto", picture = "domain";
-    };
-    auto a = std::make_shared<Arguments>();
+        "export", "Hand results over to other programs: VTK, glTF, OBJ, numpy, SVG, CSV, and scripts for "
+                  "Blender, Polyscope and ParaView");
+    auto a = std::make_shared<ExportArguments>();
     command->add_option("FILE", a->path, "Result file (HDF5)")->required();
     command
         ->add_option("-o,--output", a->output,
-                     "File to write: .vtu, .vtkhdf, .csv; .obj: the refined mesh with the layout as vt; "
-                     ".svg: a picture of the layout")
+                     "File to write. .vtp, .vtu, .vtkhdf: one block; .vtm: all of them; .glb, .gltf: surface, "
+                     "curves, cones, layout; .obj: the refined mesh with the layout as vt, .mtl and .png; "
+                     ".npz: arrays for numpy; .svg: a picture of the layout; .csv: rows of a sweep; "
+                     ".blender.py, .polyscope.py, .paraview.py: a script with its data beside it")
         ->required();
     command->add_option("--item", a->item, "Only this item");
     command
-        ->add_option("--model", a->model,
-                     "Of .obj and .svg: auto, plane, poincare, klein, half-plane, disk, sphere")
+        ->add_option("--what", a->handover.what,
+                     "Blocks, with commas: " + fmt::format("{}", fmt::join(block_names(), ", ")) + ", all")
+        ->delimiter(',');
+    command
+        ->add_option("--field", a->handover.field,
+                     "Of .glb, .gltf and scripts: what colours the surface; auto, none, or a field's name")
         ->capture_default_str();
+    command->add_option("--checker", a->handover.checker, "Squares of the checkerboard along a side; 0: none")
+        ->capture_default_str()
+        ->check(CLI::Range(0, 1024));
+    command
+        ->add_option("--model", a->model,
+                     "Of the layout: auto, plane, poincare, klein, half-plane, disk, sphere")
+        ->capture_default_str();
+    command->add_option("--max-cells", a->handover.blocks.max_cells, "Copies of the domain up to so many polygons")
+        ->capture_default_str()
+        ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
     command->add_option("--picture", a->picture, "Of .svg: as in `ricci layout --picture`")
         ->capture_default_str();
+    command->add_option("--for", a->program, "Of .py: blender, polyscope or paraview")
+        ->check(CLI::IsMember({"blender", "polyscope", "paraview"}));
     add_common(*command, common);
-    command->footer("Example: ricci export eight.h5 -o eight.vtu");
-    command->callback([&common, &action, a] {
-        action = [&common, a] {
-            return export_run(a->path, a->output, a->item, a->model, a->picture, common);
-        };
-    });
+    command->footer(
+        "Example: ricci export eight.h5 -o eight.vtm\n"
+        "         ricci export eight.h5 -o eight.blender.py && blender --python eight.blender.py");
+    command->callback([&common, &action, a] { action = [&common, a] { return export_run(*a, common); }; });
 }
 
 }  // namespace ricci::app

@@ -28,8 +28,11 @@ struct StoredLayout {
 };
 StoredLayout read_layout_group(const ResultGroup& group, std::size_t faces);
 
+/// Layout coordinates as texture coordinates: of disk models moved from [-1, 1] to [0, 1]. // L
+std::vector<std::array<double, 2>> texture_coordinates(const SurfaceLayout& layout, LayoutModel model);
+
 /// The refined input with layout coordinates as texture coordinates: convex pieces, the input's vertices
-/// first. Disk models are moved from [-1, 1] to [0, 1]. Throws UsageError for an intrinsic surface.
+/// first. Throws UsageError for an intrinsic surface.
 TexturedMesh textured_surface(const CommonRefinement& refinement, const SurfaceLayout& layout,
                               LayoutModel model);
 
