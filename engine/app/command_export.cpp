@@ -65,14 +65,16 @@ enum class Format : std::uint8_t { csv, vtk, multiblock, gltf, obj, npz, svg, sc
 
 Format format_of(const std::string& output) {
     static const std::map<std::string, Format> formats = {
-        {".csv", Format::csv},   {".vtu", Format::vtk},   {".vtp", Format::vtk}, {".vtkhdf", Format::vtk},
-        {".vtm", Format::multiblock}, {".glb", Format::gltf}, {".gltf", Format::gltf}, {".obj", Format::obj},
-        {".npz", Format::npz},   {".svg", Format::svg},   {".py", Format::script}};
+        {".csv", Format::csv},    {".vtu", Format::vtk},        {".vtp", Format::vtk},
+        {".vtkhdf", Format::vtk}, {".vtm", Format::multiblock}, {".glb", Format::gltf},
+        {".gltf", Format::gltf},  {".obj", Format::obj},        {".npz", Format::npz},
+        {".svg", Format::svg},    {".py", Format::script}};
     const auto found = formats.find(std::filesystem::path(output).extension().string());
     if (found == formats.end())
-        throw UsageError(fmt::format("'{}': export writes .vtu, .vtp, .vtm, .vtkhdf, .glb, .gltf, .obj, .npz, "
-                                     ".svg, .csv, and .blender.py, .polyscope.py, .paraview.py",
-                                     output));
+        throw UsageError(
+            fmt::format("'{}': export writes .vtu, .vtp, .vtm, .vtkhdf, .glb, .gltf, .obj, .npz, "
+                        ".svg, .csv, and .blender.py, .polyscope.py, .paraview.py",
+                        output));
     return found->second;
 }
 
@@ -176,7 +178,8 @@ int export_together(const StoredRun& run, const std::vector<const StoredItem*>& 
         try {
             const std::vector<std::string> there = blocks_of(*source);
             if (there.empty())
-                throw UsageError(item->item.name + " is an intrinsic surface without a layout: nothing to show");
+                throw UsageError(item->item.name +
+                                 " is an intrinsic surface without a layout: nothing to show");
             for (const std::string& name : wanted_blocks(*source, a.handover.what, there))
                 require_block(name, *source);
         } catch (const UsageError& error) {
@@ -222,22 +225,25 @@ int export_run(ExportArguments a, const CommonOptions& common) {
 
 void add_export(CLI::App& app, CommonOptions& common, Action& action) {
     auto* command = app.add_subcommand(
-        "export", "Hand results over to other programs: VTK, glTF, OBJ, numpy, SVG, CSV, and scripts for "
-                  "Blender, Polyscope and ParaView");
+        "export",
+        "Hand results over to other programs: VTK, glTF, OBJ, numpy, SVG, CSV, and scripts for "
+        "Blender, Polyscope and ParaView");
     auto a = std::make_shared<ExportArguments>();
     command->add_option("FILE", a->path, "Result file (HDF5)")->required();
     command
-        ->add_option("-o,--output", a->output,
-                     "File to write. .vtp, .vtu, .vtkhdf: one block; .vtm: all of them; .glb, .gltf: surface, "
-                     "curves, cones, layout; .obj: the refined mesh with the layout as vt, .mtl and .png; "
-                     ".npz: arrays for numpy; .svg: a picture of the layout; .csv: rows of a sweep; "
-                     ".blender.py, .polyscope.py, .paraview.py: a script with its data beside it")
+        ->add_option(
+            "-o,--output", a->output,
+            "File to write. .vtp, .vtu, .vtkhdf: one block; .vtm: all of them; .glb, .gltf: surface, "
+            "curves, cones, layout; .obj: the refined mesh with the layout as vt, .mtl and .png; "
+            ".npz: arrays for numpy; .svg: a picture of the layout; .csv: rows of a sweep; "
+            ".blender.py, .polyscope.py, .paraview.py: a script with its data beside it")
         ->required();
     command->add_option("--item", a->item, "Only this item");
     command
         ->add_option("--what", a->handover.what,
                      "Blocks, with commas: " + fmt::format("{}", fmt::join(block_names(), ", ")) + ", all")
-        ->delimiter(',');
+        ->delimiter(',')
+        ->allow_extra_args(false);
     command
         ->add_option("--field", a->handover.field,
                      "Of .glb, .gltf and scripts: what colours the surface; auto, none, or a field's name")
@@ -249,7 +255,9 @@ void add_export(CLI::App& app, CommonOptions& common, Action& action) {
         ->add_option("--model", a->model,
                      "Of the layout: auto, plane, poincare, klein, half-plane, disk, sphere")
         ->capture_default_str();
-    command->add_option("--max-cells", a->handover.blocks.max_cells, "Copies of the domain up to so many polygons")
+    command
+        ->add_option("--max-cells", a->handover.blocks.max_cells,
+                     "Copies of the domain up to so many polygons")
         ->capture_default_str()
         ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
     command->add_option("--picture", a->picture, "Of .svg: as in `ricci layout --picture`")

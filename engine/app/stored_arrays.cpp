@@ -43,7 +43,8 @@ std::vector<std::vector<Point>> StoredArrays::polylines(const std::string& path,
                             return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
                         }),
             "a point of a polyline is not finite");
-    for (std::size_t k = 0; k < count; ++k) lines[k].assign(all.begin() + first[k], all.begin() + first[k + 1]);
+    for (std::size_t k = 0; k < count; ++k)
+        lines[k].assign(all.begin() + first[k], all.begin() + first[k + 1]);
     return lines;
 }
 

@@ -140,6 +140,14 @@ std::array<double, 2> model_point(LayoutModel model, int kappa, const std::array
     return conformal_point(kappa, position);
 }
 
+namespace {
+
+std::array<double, 2> finite_or_origin(const std::array<double, 2>& uv) {
+    return std::isfinite(uv[0]) && std::isfinite(uv[1]) ? uv : std::array<double, 2>{};
+}
+
+}  // namespace
+
 std::vector<std::array<double, 2>> texture_coordinates(const SurfaceLayout& layout, LayoutModel model) {
     const bool disk = layout.kappa != 0 && !(layout.kappa < 0 && model == LayoutModel::half_plane);
     std::vector<std::array<double, 2>> texture;
@@ -147,7 +155,7 @@ std::vector<std::array<double, 2>> texture_coordinates(const SurfaceLayout& layo
     for (const auto& p : layout.position) {
         std::array<double, 2> uv = model_point(model, layout.kappa, p);
         if (disk) uv = {(uv[0] + 1) / 2, (uv[1] + 1) / 2};
-        texture.push_back(uv);
+        texture.push_back(finite_or_origin(uv));
     }
     return texture;
 }
@@ -168,7 +176,7 @@ TexturedMesh layout_surface(const CommonRefinement& r, const SurfaceLayout& layo
     for (const auto& p : layout.position) {
         const std::array<double, 2> uv = model_point(model, layout.kappa, p);
         out.points.push_back(layout.kappa > 0 ? Point{p[0], p[1], p[2]} : Point{uv[0], uv[1], 0.0});
-        out.uv.push_back(uv);
+        out.uv.push_back(finite_or_origin(uv));
     }
     for (const Index v : layout.corner_vertex) out.corners.push_back({v, v});
     out.face_start = r.first;

@@ -28,7 +28,8 @@ struct StoredLayout {
 };
 StoredLayout read_layout_group(const ResultGroup& group, std::size_t faces);
 
-/// Layout coordinates as texture coordinates: of disk models moved from [-1, 1] to [0, 1]. // L
+/// Layout coordinates as texture coordinates: of disk models and the sphere moved from [-1, 1] to [0, 1]. A
+/// vertex without an image (at the centre of the stereographic projection) has (0, 0). // L
 std::vector<std::array<double, 2>> texture_coordinates(const SurfaceLayout& layout, LayoutModel model);
 
 /// The refined input with layout coordinates as texture coordinates: convex pieces, the input's vertices

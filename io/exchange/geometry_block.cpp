@@ -25,6 +25,15 @@ void require_arrays(const GeometryBlock& block, std::span<const DataArray> array
     }
 }
 
+/// That `name`, unless it is empty, is point data of so many doubles each.
+void require_vectors(const GeometryBlock& block, const std::string& name, std::size_t components) {
+    if (name.empty()) return;
+    const DataArray* array = find_array(block.point_data, name);
+    require(array != nullptr && array->components == components &&
+                std::holds_alternative<std::vector<double>>(array->values),
+            block, "no point data of the name " + name + " with so many components");
+}
+
 }  // namespace
 
 std::size_t DataArray::size() const {
@@ -70,11 +79,8 @@ void require_valid(const GeometryBlock& block) {
     require_arrays(block, block.point_data, block.points.size(), false);
     require_arrays(block, block.cell_data, block.cell_count(), false);
     require_arrays(block, block.field_data, 0, true);
-    if (block.texture.empty()) return;
-    const DataArray* texture = find_array(block.point_data, block.texture);
-    require(texture != nullptr && texture->components == 2 &&
-                std::holds_alternative<std::vector<double>>(texture->values),
-            block, "no texture coordinates of the name " + block.texture);
+    require_vectors(block, block.texture, 2);
+    require_vectors(block, block.normals, 3);
 }
 
 }  // namespace ricci

@@ -36,6 +36,7 @@ struct GeometryBlock {
     std::vector<Index> first{0};  // cells + 1, first corner of each
     std::vector<DataArray> point_data, cell_data, field_data;
     std::string texture;  // name of the two-component point data that textures follow; empty: none
+    std::string normals;  // name of the three-component point data that shading follows; empty: none
 
     [[nodiscard]] std::size_t cell_count() const { return first.size() - 1; }
     [[nodiscard]] std::span<const Index> cell(std::size_t i) const {

@@ -47,8 +47,8 @@ std::array<double, 4> linear_colour(const Colour& c) {
 std::vector<std::uint16_t> colour_fractions(const std::vector<Colour>& colours) {
     std::array<std::uint16_t, 256> table{};
     for (std::size_t i = 0; i < table.size(); ++i)
-        table[i] = static_cast<std::uint16_t>(
-            std::lround(65535.0 * linear_light(static_cast<std::uint8_t>(i))));
+        table[i] =
+            static_cast<std::uint16_t>(std::lround(65535.0 * linear_light(static_cast<std::uint8_t>(i))));
     std::vector<std::uint16_t> values;
     values.reserve(4 * colours.size());
     for (const Colour& c : colours)
@@ -136,8 +136,7 @@ void add_scenes(const GltfDocument& document, json& root) {
         for (const GltfNode& node : scene.nodes) {
             require(node.mesh < document.meshes.size(), "a node has no mesh");
             json object = {{"name", node.name}, {"mesh", node.mesh}};
-            if (node.translation)
-                object["translation"] = singles(std::vector<Point>{*node.translation});
+            if (node.translation) object["translation"] = singles(std::vector<Point>{*node.translation});
             if (node.scale != 1.0) object["scale"] = std::vector<float>(3, single(node.scale));
             if (!node.extras.is_null()) object["extras"] = node.extras;
             numbers.push_back(nodes.size());
@@ -238,7 +237,7 @@ void save_gltf(const std::string& path, const GltfDocument& document) {
             image["mimeType"] = "image/png";
             image["bufferView"] = buffer.add_bytes(document.texture_png);
         } else {
-            const std::string name = file.replace_extension(".png").string();
+            const std::string name = file.replace_extension(".checker.png").string();
             save_apart(name, document.texture_png);
             image["uri"] = uri_of(std::filesystem::path(name).filename().string());
         }

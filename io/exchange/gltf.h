@@ -28,8 +28,8 @@ struct GltfPrimitive {
     std::vector<Point> normals;             // one for each point, unit vectors; or none
     std::vector<std::array<double, 2>> uv;  // one for each point, v upwards; or none
     std::vector<Colour> colours;            // one for each point, or none
-    /// Values per point under names of the application ("_CURVATURE"): names in upper case after an underscore.
-    /// Of doubles, one component each.
+    /// Values per point under names of the application ("_CURVATURE"): names in upper case after an
+    /// underscore. Of doubles, one component each.
     std::vector<DataArray> attributes;
     std::vector<Index> indices;  // none: the points in their order
     std::size_t material = 0;
@@ -64,9 +64,10 @@ struct GltfDocument {
     nlohmann::json extras;
 };
 
-/// Writes .glb (all in one file) or .gltf (with <stem>.bin and, where there is a texture, <stem>.png beside
-/// it). Throws std::invalid_argument for arrays that do not fit together, indices out of range or numbers
-/// that single precision does not hold; FileError for another suffix, beyond 4 GiB, and where writing fails.
+/// Writes .glb (all in one file) or .gltf (with <stem>.bin and, where there is a texture, <stem>.checker.png
+/// beside it). Throws std::invalid_argument for arrays that do not fit together, indices out of range or
+/// numbers that single precision does not hold; FileError for another suffix, beyond 4 GiB, and where writing
+/// fails.
 void save_gltf(const std::string& path, const GltfDocument& document);
 
 }  // namespace ricci

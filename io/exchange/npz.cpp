@@ -17,7 +17,8 @@ namespace {
 std::string npy_header(const char* type, const NpzFile::Shape& shape) {
     std::string sizes;
     for (const std::size_t n : shape) sizes += fmt::format("{}, ", n);
-    std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, sizes);
+    std::string header =
+        fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, sizes);
     constexpr std::size_t kPrefix = 10, kAlignment = 64;
     while ((kPrefix + header.size() + 1) % kAlignment != 0) header += ' ';
     header += '\n';
@@ -46,7 +47,8 @@ std::uint32_t checksum(std::uint32_t crc, std::string_view bytes) {
 // What the local header and the directory have in common (PKWARE's APPNOTE, 4.3.7 and 4.3.12): version 2.0,
 // names in UTF-8, stored, 1 January 1980.
 void write_common(StagedFile& file, const Entry& entry) {
-    for (const int field : {20, 1 << 11, 0, 0, (1 << 5) | 1}) file.write_value(static_cast<std::uint16_t>(field));
+    for (const int field : {20, 1 << 11, 0, 0, (1 << 5) | 1})
+        file.write_value(static_cast<std::uint16_t>(field));
     for (const std::uint32_t field : {entry.crc, entry.size, entry.size}) file.write_value(field);
     file.write_value(static_cast<std::uint16_t>(entry.name.size()));
     file.write_value(std::uint16_t{0});  // no extra field
@@ -109,7 +111,8 @@ void NpzFile::close() {
     const std::uint32_t size = fitting(file.position() - start, impl_->path);
     const auto count = static_cast<std::uint16_t>(impl_->entries.size());
     file.write_value(std::uint32_t{0x06054b50});
-    for (const std::uint16_t field : {std::uint16_t{0}, std::uint16_t{0}, count, count}) file.write_value(field);
+    for (const std::uint16_t field : {std::uint16_t{0}, std::uint16_t{0}, count, count})
+        file.write_value(field);
     file.write_value(size);
     file.write_value(start);
     file.write_value(std::uint16_t{0});  // no comment

@@ -12,7 +12,8 @@
 namespace ricci {
 
 /// An archive under construction. Arrays are stored, not compressed; all throw FileError, also beyond the
-/// 4 GiB that a plain zip file may have, and std::invalid_argument for a shape that is not that of the values.
+/// 4 GiB that a plain zip file may have, and std::invalid_argument for a shape that is not that of the
+/// values.
 class NpzFile {
   public:
     explicit NpzFile(const std::string& path);

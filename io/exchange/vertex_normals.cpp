@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace ricci {
 namespace {
@@ -22,7 +23,9 @@ Point area_vector(const GeometryBlock& block, std::span<const Index> cell) {
 }  // namespace
 
 std::vector<Point> vertex_normals(const GeometryBlock& block, std::span<const Index> identity) {
-    const auto of = [&](std::size_t v) { return identity.empty() ? v : static_cast<std::size_t>(identity[v]); };
+    const auto of = [&](std::size_t v) {
+        return identity.empty() ? v : static_cast<std::size_t>(identity[v]);
+    };
     std::size_t count = block.points.size();
     for (const Index v : identity) count = std::max(count, static_cast<std::size_t>(v) + 1);
     std::vector<Point> sum(count, Point{});
@@ -40,6 +43,14 @@ std::vector<Point> vertex_normals(const GeometryBlock& block, std::span<const In
                          : Point{0.0, 0.0, 1.0};
     }
     return normals;
+}
+
+void add_normals(GeometryBlock& block, std::span<const Index> identity) {
+    std::vector<double> values;
+    values.reserve(3 * block.points.size());
+    for (const Point& n : vertex_normals(block, identity)) values.insert(values.end(), n.begin(), n.end());
+    block.point_data.push_back({"normal", "1", 3, std::move(values)});
+    block.normals = "normal";
 }
 
 }  // namespace ricci

@@ -13,4 +13,7 @@ namespace ricci {
 /// a whole. (0, 0, 1) where there is no direction. // one per point
 std::vector<Point> vertex_normals(const GeometryBlock& block, std::span<const Index> identity);
 
+/// Adds them as the point data `normal`, which shading then follows.
+void add_normals(GeometryBlock& block, std::span<const Index> identity);
+
 }  // namespace ricci

@@ -58,8 +58,10 @@ void write_data(hid_t root, const char* name, const std::vector<DataArray>& arra
         const bool written = std::visit(
             [&]<class T>(const std::vector<T>& values) {
                 // VTK 9.1 stops at texts in these groups.
-                if constexpr (std::is_same_v<T, std::string>) return false;
-                else hdf5::write_array(group, stored, std::span<const T>(values), shape);
+                if constexpr (std::is_same_v<T, std::string>)
+                    return false;
+                else
+                    hdf5::write_array(group, stored, std::span<const T>(values), shape);
                 return true;
             },
             array.values);

@@ -60,11 +60,11 @@ class VtkText {
 
     void data(const DataArray& array, bool field) {
         const std::string inner =
-            array.unit.empty()
-                ? ""
-                : fmt::format("<InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">{}"
-                              "</InformationKey>\n",
-                              escaped(array.unit));
+            array.unit.empty() ? ""
+                               : fmt::format(
+                                     "<InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">{}"
+                                     "</InformationKey>\n",
+                                     escaped(array.unit));
         std::string attributes =
             fmt::format("Name=\"{}\" NumberOfComponents=\"{}\"", escaped(array.name), array.components);
         if (field) attributes += fmt::format(" NumberOfTuples=\"{}\"", array.rows());
@@ -85,8 +85,9 @@ class VtkText {
 
   private:
     void declare(const char* type, const std::string& attributes, const std::string& inner, Appended array) {
-        header_ += fmt::format("<DataArray type=\"{}\" {} format=\"appended\" offset=\"{}\">\n{}</DataArray>\n",
-                               type, attributes, offset_, inner);
+        header_ +=
+            fmt::format("<DataArray type=\"{}\" {} format=\"appended\" offset=\"{}\">\n{}</DataArray>\n",
+                        type, attributes, offset_, inner);
         offset_ += sizeof(std::uint64_t) + array.bytes;
         arrays_.push_back(std::move(array));
     }
@@ -123,9 +124,11 @@ void add_cells(VtkText& text, const VtkCells& cells, const std::vector<std::uint
 }
 
 void add_data(VtkText& text, const char* element, const std::vector<DataArray>& arrays,
-              const std::string& texture) {
-    text.add(fmt::format("<{}{}>\n", element,
-                         texture.empty() ? "" : fmt::format(" TCoords=\"{}\"", escaped(texture))));
+              const std::string& texture, const std::string& normals) {
+    std::string active;
+    if (!texture.empty()) active += fmt::format(" TCoords=\"{}\"", escaped(texture));
+    if (!normals.empty()) active += fmt::format(" Normals=\"{}\"", escaped(normals));
+    text.add(fmt::format("<{}{}>\n", element, active));
     for (const DataArray& array : arrays) text.data(array, false);
     text.add(fmt::format("</{}>\n", element));
 }
@@ -140,7 +143,8 @@ std::string piece_of(const GeometryBlock& block, bool grid) {
     std::string piece = fmt::format("<Piece NumberOfPoints=\"{}\"", block.points.size());
     if (grid) return piece + fmt::format(" NumberOfCells=\"{}\">\n", block.cell_count());
     for (const CellKind kind : {CellKind::point, CellKind::line, CellKind::polygon})
-        piece += fmt::format(" NumberOf{}=\"{}\"", element_of(kind), kind == block.kind ? block.cell_count() : 0);
+        piece +=
+            fmt::format(" NumberOf{}=\"{}\"", element_of(kind), kind == block.kind ? block.cell_count() : 0);
     return piece + " NumberOfStrips=\"0\">\n";
 }
 
@@ -165,15 +169,15 @@ void save_vtk_xml(const std::string& path, const GeometryBlock& block) {
     for (const DataArray& array : block.field_data) text.data(array, true);
     text.add("</FieldData>\n");
     text.add(piece_of(block, grid) + "<Points>\n");
-    text.array<double>("Float64", "Name=\"Points\" NumberOfComponents=\"3\"", "",
-                       std::span(block.points.empty() ? nullptr : block.points.front().data(),
-                                 3 * block.points.size()));
+    text.array<double>(
+        "Float64", "Name=\"Points\" NumberOfComponents=\"3\"", "",
+        std::span(block.points.empty() ? nullptr : block.points.front().data(), 3 * block.points.size()));
     const char* element = grid ? "Cells" : element_of(block.kind);
     text.add(fmt::format("</Points>\n<{}>\n", element));
     add_cells(text, cells, types);
     text.add(fmt::format("</{}>\n", element));
-    add_data(text, "PointData", block.point_data, block.texture);
-    add_data(text, "CellData", block.cell_data, "");
+    add_data(text, "PointData", block.point_data, block.texture, block.normals);
+    add_data(text, "CellData", block.cell_data, "", "");
     text.add(fmt::format("</Piece>\n</{}>\n", type));
     text.save(path);
 }
@@ -188,7 +192,8 @@ void append_tree(std::string& text, std::span<const VtkBlockTree> blocks) {
                            escaped(block.name), escaped(block.file));
             continue;
         }
-        fmt::format_to(std::back_inserter(text), "<Block index=\"{}\" name=\"{}\">\n", i, escaped(block.name));
+        fmt::format_to(std::back_inserter(text), "<Block index=\"{}\" name=\"{}\">\n", i,
+                       escaped(block.name));
         append_tree(text, block.children);
         text += "</Block>\n";
     }

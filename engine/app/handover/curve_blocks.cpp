@@ -173,8 +173,9 @@ GeometryBlock sides(const ItemSource& source) {
     block.cell_data = std::move(data).arrays();
     const StoredArrays arrays(*find_result(source.item(), "layout"));
     const auto& paired = arrays.list<Index>("pairings/side");
-    block.field_data = {{"pairing_side", "", 1, paired},
-                        {"pairing_element", "1", 4, arrays.list<double>("pairings/element", 4 * paired.size())}};
+    block.field_data = {
+        {"pairing_side", "", 1, paired},
+        {"pairing_element", "1", 4, arrays.list<double>("pairings/element", 4 * paired.size())}};
     return block;
 }
 

@@ -25,8 +25,8 @@ std::vector<std::string> wanted_blocks(const ItemSource& source, const std::vect
 
 /// .vtp, .vtu or .vtkhdf: one block, the surface by default.
 void write_vtk(const std::string& path, const ItemSource& source, const HandoverOptions& options);
-/// .vtm, and its blocks in the folder <stem>.blocks beside it; with several items a branch for each, under the
-/// names given. With `scene` (for the script) also scene.json and checker.png in the folder.
+/// .vtm, and its blocks in the folder <stem>.blocks beside it; with several items a branch for each, under
+/// the names given. With `scene` (for the script) also scene.json and checker.png in the folder.
 void write_multiblock(const std::string& path, const std::vector<const ItemSource*>& sources,
                       const std::vector<std::string>& names, const HandoverOptions& options,
                       bool scene = false);

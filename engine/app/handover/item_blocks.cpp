@@ -39,7 +39,8 @@ bool has_sides(const ItemSource& s) {
 bool has_cut(const ItemSource& s) {
     return has_sides(s) && !s.intrinsic();
 }
-// Vertex paths do not tell the edges of an intrinsic surface apart, which may have several between two vertices.
+// Vertex paths do not tell the edges of an intrinsic surface apart, which may have several between two
+// vertices.
 bool has_generators(const ItemSource& s) {
     const auto drawn = [](const std::vector<Index>& path) { return path.size() > 1; };
     return has_mapped_surface(s) &&
@@ -63,8 +64,7 @@ const std::vector<BlockKind>& kinds() {
          blocks::curves},
         {"loops", [](const ItemSource& s) { return blocks::has_drawn(s, "teichmuller", "loops"); },
          blocks::loops},
-        {"cones",
-         [](const ItemSource& s) { return !s.intrinsic() && !blocks::find_cones(s.item()).empty(); },
+        {"cones", [](const ItemSource& s) { return !s.intrinsic() && !blocks::find_cones(s.item()).empty(); },
          blocks::cones},
         {"charts", [](const ItemSource& s) { return find_result(s.item(), "atlas") != nullptr; },
          blocks::charts}};

@@ -44,8 +44,8 @@ void add_sweep(const StoredSweep& sweep, std::size_t vertices, std::vector<DataA
         if (best) fields.push_back({"best_conformal_factor", "1", 1, kept.conformal_factor});
         if (worst) fields.push_back({"worst_conformal_factor", "1", 1, kept.conformal_factor});
         if (!best && !worst)
-            fields.push_back({fmt::format("conformal_factor_of_vertex_{}", kept.vertex), "1", 1,
-                              kept.conformal_factor});
+            fields.push_back(
+                {fmt::format("conformal_factor_of_vertex_{}", kept.vertex), "1", 1, kept.conformal_factor});
     }
 }
 
@@ -124,9 +124,9 @@ void add_lists(const ResultGroup& group, std::vector<DataArray>& data) {
         if (group.kind != listed.kind) continue;
         for (const ResultArray& array : group.arrays)
             if (array.path == listed.path)
-                data.push_back({listed.name, listed.unit, 1,
-                                std::visit([](const auto& v) { return decltype(DataArray::values)(v); },
-                                           array.values)});
+                data.push_back(
+                    {listed.name, listed.unit, 1,
+                     std::visit([](const auto& v) { return decltype(DataArray::values)(v); }, array.values)});
     }
 }
 
@@ -190,8 +190,8 @@ std::vector<DataArray> item_data(const RunInfo& info, const StoredItem& stored) 
     }
     if (stored.flow) add_flow_data(info, *stored.flow, data);
     for (const ResultGroup& group : stored.results) {
-        data.push_back({group.kind + "_status", "", 1,
-                        std::vector<std::string>{status_name(info, group.status)}});
+        data.push_back(
+            {group.kind + "_status", "", 1, std::vector<std::string>{status_name(info, group.status)}});
         for (const ResultAttribute& attribute : group.attributes)
             data.push_back(attribute_array(group.kind, attribute));
         add_lists(group, data);

@@ -9,6 +9,7 @@
 #include "engine/app/pictures/copy_colours.h"
 #include "engine/app/pictures/laid_out_domain.h"
 #include "engine/app/stored_arrays.h"
+#include "io/exchange/vertex_normals.h"
 #include "io/picture/colour.h"
 
 namespace ricci::app::blocks {
@@ -112,6 +113,7 @@ GeometryBlock cut_surface(const ItemSource& source) {
         block.points.push_back(points[at(v)]);
     }
     add_pieces(source, block);
+    add_normals(block, stored.layout.refinement_vertex);  // as if it were not cut
     return block;
 }
 
@@ -121,6 +123,7 @@ GeometryBlock layout(const ItemSource& source) {
     for (const auto& p : layout.position)
         block.points.push_back(placed(p, source.options().model, layout.kappa));
     add_pieces(source, block);
+    if (layout.kappa > 0) add_normals(block, layout.refinement_vertex);
     return block;
 }
 
@@ -132,9 +135,10 @@ GeometryBlock domains(const ItemSource& source) {
     const std::size_t fitting = std::max<std::size_t>(1, source.options().max_cells / largest);
     const std::size_t count = std::min(stored.copies.size(), fitting);
     if (count < stored.copies.size())
-        spdlog::warn("{}: {} of {} copies of the domain, which are nearest, are written as polygons "
-                     "(--max-cells); `outlines` has all",
-                     source.item().item.name, count, stored.copies.size());
+        spdlog::warn(
+            "{}: {} of {} copies of the domain, which are nearest, are written as polygons "
+            "(--max-cells); `outlines` has all",
+            source.item().item.name, count, stored.copies.size());
     const std::vector<std::int32_t> classes = classes_of(stored);
     GeometryBlock block;
     block.points.reserve(count * vertices);
@@ -145,9 +149,11 @@ GeometryBlock domains(const ItemSource& source) {
         for (const auto& p : layout.position)
             block.points.push_back(
                 placed(apply(layout.kappa, stored.copies[k], p), source.options().model, layout.kappa));
-        for (const Index v : layout.corner_vertex) block.corners.push_back(v + static_cast<Index>(k * vertices));
+        for (const Index v : layout.corner_vertex)
+            block.corners.push_back(v + static_cast<Index>(k * vertices));
         const Index start = block.first.back();
-        for (std::size_t p = 0; p < pieces; ++p) block.first.push_back(start + stored.refinement.first[p + 1]);
+        for (std::size_t p = 0; p < pieces; ++p)
+            block.first.push_back(start + stored.refinement.first[p + 1]);
         copy.insert(copy.end(), pieces, static_cast<std::int32_t>(k));
         colour.insert(colour.end(), pieces, classes[k]);
         face.insert(face.end(), stored.refinement.input_face.begin(), stored.refinement.input_face.end());
@@ -183,9 +189,10 @@ GeometryBlock outlines(const ItemSource& source) {
     }
     std::vector<std::int32_t> classes = classes_of(stored);
     classes.resize(copy.size());
-    block.cell_data = {{"copy", "", 1, std::move(copy)},
-                       {"copy_class", "", 1, std::move(classes)},
-                       {"copy_element", "1", 4, elements(std::span(stored.copies).first(block.cell_count()))}};
+    block.cell_data = {
+        {"copy", "", 1, std::move(copy)},
+        {"copy_class", "", 1, std::move(classes)},
+        {"copy_element", "1", 4, elements(std::span(stored.copies).first(block.cell_count()))}};
     return block;
 }
 

@@ -8,8 +8,8 @@
 
 namespace ricci::app {
 
-/// Where the vertices of a refinement lie on the edges of the mesh. The mesh's own come first; every other one
-/// is the crossing of an edge of the mesh with one of the final triangulation.
+/// Where the vertices of a refinement lie on the edges of the mesh. The mesh's own come first; every other
+/// one is the crossing of an edge of the mesh with one of the final triangulation.
 class RefinedField {
   public:
     /// `triangles`, `vertices`: of the mesh. Throws FileError for a refinement that names vertices far beyond

@@ -60,15 +60,8 @@ std::string colour_number(const std::string& block) {
     if (block == "geodesics") return "geodesic";
     if (block == "curves") return "curve";
     if (block == "loops") return "loop";
-    if (block == "domains" || block == "outlines") return "copy_class";
+    if (block == "domains") return "copy_class";
     return "";
-}
-
-const std::vector<std::string>& scene_blocks() {
-    static const std::vector<std::string> names = {"surface", "cut_surface", "layout",     "domains", "outlines",
-                                                   "sides",   "cut",         "generators", "layout_generators",
-                                                   "geodesics", "curves",    "loops",      "cones"};
-    return names;
 }
 
 nlohmann::json describe_scene(const ItemSource& source, const HandoverOptions& options,

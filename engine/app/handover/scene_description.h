@@ -14,8 +14,8 @@ namespace ricci::app {
 std::string colour_number(const std::string& block);
 
 /// {item, source, software, command, length_unit, kappa, checker, field {name, unit, of_faces, low, high,
-/// colours}, curve_colours, boundary_colour, blocks {}}; colours are sRGB from 0 to 1, `field` null where none
-/// is shown. Blocks are added by describe_block.
+/// colours}, curve_colours, boundary_colour, blocks {}}; colours are sRGB from 0 to 1, `field` null where
+/// none is shown. Blocks are added by describe_block.
 nlohmann::json describe_scene(const ItemSource& source, const HandoverOptions& options,
                               const std::optional<ShownField>& field);
 
@@ -24,8 +24,5 @@ nlohmann::json describe_block(const GeometryBlock& block);
 
 /// As text; bytes that are not UTF-8 become \xNN.
 std::string json_text(const nlohmann::json& value);
-
-/// The blocks that scripts show.
-const std::vector<std::string>& scene_blocks();
 
 }  // namespace ricci::app

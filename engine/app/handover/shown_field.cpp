@@ -28,8 +28,8 @@ ColourScale scale_of(const std::string& name, const std::vector<double>& values)
     if (finite.empty()) finite = {0.0};
     const auto [low, high] = std::minmax_element(finite.begin(), finite.end());
     const double least = *low, greatest = *high, width = greatest - least;
-    FaceColours colours = around_zero(name) ? diverging_colours(finite, 0.0, name)
-                                            : sequential_colours(finite, name);
+    FaceColours colours =
+        around_zero(name) ? diverging_colours(finite, 0.0, name) : sequential_colours(finite, name);
     // A few values that stand out (cones) are all there is to see.
     if (colours.scale.axis.high() - colours.scale.axis.low() < 1e-6 * width) {
         const double most = std::max(std::abs(least), std::abs(greatest));

@@ -18,8 +18,8 @@ struct ShownField {
 
 /// `wanted`: a name; "none"; "auto": the area distortion of a sweep; nothing where there is a layout, whose
 /// checkerboard shows more; else the conformal factor of the flow. Values around zero have the diverging
-/// colours, symmetric about it; ranges leave out one per cent at each end. Throws UsageError naming the fields
-/// there are.
+/// colours, symmetric about it; ranges leave out one per cent at each end. Throws UsageError naming the
+/// fields there are.
 std::optional<ShownField> choose_field(const StoredItem& item, const std::string& wanted, bool has_layout);
 
 /// Its values at vertices; at a vertex of faces with values, the mean of these. // V

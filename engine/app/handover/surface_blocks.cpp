@@ -8,6 +8,7 @@
 #include "engine/app/handover/blocks.h"
 #include "engine/app/records.h"
 #include "engine/app/stored_arrays.h"
+#include "io/exchange/vertex_normals.h"
 
 namespace ricci::app::blocks {
 namespace {
@@ -25,6 +26,7 @@ GeometryBlock surface(const ItemSource& source) {
     for (const Triangle& triangle : stored.item.triangles) block.add_cell(triangle);
     block.point_data = vertex_fields(stored);
     block.cell_data = face_fields(stored);
+    add_normals(block, {});
     block.field_data.push_back({"length_unit", "", 1, std::vector<std::string>{length_unit(stored)}});
     return block;
 }
@@ -36,8 +38,7 @@ std::vector<Cone> find_cones(const StoredItem& stored) {
         // are none.
         const std::vector<double>& target = stored.flow->target_curvature;
         std::vector<std::uint8_t> excluded(target.size(), 0);
-        if (stored.item.boundaries > 0)
-            excluded = boundary_vertices(surface_of(stored.item).connectivity);
+        if (stored.item.boundaries > 0) excluded = boundary_vertices(surface_of(stored.item).connectivity);
         constexpr double kSmallest = 1e-9;
         for (std::size_t v = 0; v < target.size(); ++v)
             if (std::abs(target[v]) > kSmallest && !excluded[v])
@@ -81,7 +82,8 @@ GeometryBlock charts(const ItemSource& source) {
     arrays.require(faces.size() == vertices.size() && entries > 0 && coordinates.size() % entries == 0,
                    "charts do not fit together");
     const std::size_t dimension = coordinates.size() / entries;
-    arrays.require(dimension == 2 || dimension == 3, "coordinates of charts have neither two nor three numbers");
+    arrays.require(dimension == 2 || dimension == 3,
+                   "coordinates of charts have neither two nor three numbers");
     GeometryBlock block;
     std::vector<std::int32_t> chart, face_number, vertex_number;
     std::vector<Index> place(vertex_count(stored), -1);
@@ -94,7 +96,8 @@ GeometryBlock charts(const ItemSource& source) {
             vertex_number.push_back(v);
         }
         for (const Index f : faces[k]) {
-            arrays.require(f >= 0 && at(f) < stored.item.triangles.size(), "a chart has a face that does not exist");
+            arrays.require(f >= 0 && at(f) < stored.item.triangles.size(),
+                           "a chart has a face that does not exist");
             std::array<Index, 3> corners{};
             for (std::size_t i = 0; i < 3; ++i) corners[i] = place[at(stored.item.triangles[at(f)][i])];
             arrays.require(std::all_of(corners.begin(), corners.end(), [](Index p) { return p >= 0; }),

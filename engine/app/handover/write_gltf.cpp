@@ -93,7 +93,8 @@ void add_fields(const GeometryBlock& block, GltfPrimitive& primitive, json& unit
 }
 
 /// The field's value at every point of the block.
-std::vector<double> shown_values(const ItemSource& source, const GeometryBlock& block, const ShownField& field) {
+std::vector<double> shown_values(const ItemSource& source, const GeometryBlock& block,
+                                 const ShownField& field) {
     const DataArray* vertex = find_array(block.point_data, "vertex");
     const std::vector<double> at_vertices = values_at_vertices(source.item(), field);
     if (vertex == nullptr) return at_vertices;
@@ -112,14 +113,19 @@ void add_texture(const GeometryBlock& block, GltfPrimitive& primitive) {
     for (std::size_t i = 0; i + 1 < uv->size(); i += 2) primitive.uv.push_back({(*uv)[i], (*uv)[i + 1]});
 }
 
+std::vector<Point> normals_of(const GeometryBlock& block) {
+    const std::vector<double>* stored = find_doubles(block.point_data, block.normals);
+    if (stored == nullptr) return vertex_normals(block, {});
+    std::vector<Point> normals;
+    for (std::size_t i = 0; i + 2 < stored->size(); i += 3)
+        normals.push_back({(*stored)[i], (*stored)[i + 1], (*stored)[i + 2]});
+    return normals;
+}
+
 GltfMesh surface_mesh(const ItemSource& source, GeometryBlock block, const std::optional<ShownField>& field,
                       bool textured) {
     GltfPrimitive primitive;
-    const DataArray* vertex = find_array(block.point_data, "vertex");
-    const bool cut_open = block.name == "cut_surface";
-    primitive.normals = vertex_normals(
-        block, cut_open ? std::span<const Index>(std::get<std::vector<std::int32_t>>(vertex->values))
-                        : std::span<const Index>());
+    primitive.normals = normals_of(block);
     if (textured) add_texture(block, primitive);
     primitive.material = primitive.uv.empty() ? kPlain : kTextured;
     if (field && block.name != "domains")
@@ -156,7 +162,7 @@ json cell_extras(const GeometryBlock& block, std::size_t cell) {
 
 std::size_t curve_material(const GeometryBlock& block, std::size_t cell) {
     const DataArray* number = find_array(block.cell_data, colour_number(block.name));
-    if (number == nullptr) return kFirstCurve;
+    if (number == nullptr) return kBoundary;
     const std::int32_t k = std::get<std::vector<std::int32_t>>(number->values)[cell];
     return k < 0 ? kBoundary : kFirstCurve + static_cast<std::size_t>(k) % kCategoryColours.size();
 }
@@ -167,7 +173,8 @@ GltfMesh curve_mesh(const GeometryBlock& block) {
         GltfPrimitive& primitive = mesh.primitives.emplace_back();
         primitive.mode = GltfMode::line_strip;
         primitive.material = curve_material(block, i);
-        for (const Index v : block.cell(i)) primitive.points.push_back(block.points[static_cast<std::size_t>(v)]);
+        for (const Index v : block.cell(i))
+            primitive.points.push_back(block.points[static_cast<std::size_t>(v)]);
         primitive.extras = cell_extras(block, i);
     }
     return mesh;
@@ -184,9 +191,11 @@ GltfMesh marker_mesh() {
         std::map<std::pair<Index, Index>, Index> middle;
         std::vector<Triangle> finer;
         const auto between = [&](Index a, Index b) {
-            const auto [found, fresh] = middle.emplace(std::minmax(a, b), static_cast<Index>(ball.points.size()));
+            const auto [found, fresh] =
+                middle.emplace(std::minmax(a, b), static_cast<Index>(ball.points.size()));
             if (!fresh) return found->second;
-            const Point &p = ball.points[static_cast<std::size_t>(a)], &q = ball.points[static_cast<std::size_t>(b)];
+            const Point &p = ball.points[static_cast<std::size_t>(a)],
+                        &q = ball.points[static_cast<std::size_t>(b)];
             Point m{p[0] + q[0], p[1] + q[1], p[2] + q[2]};
             const double length = std::hypot(m[0], m[1], m[2]);
             for (double& x : m) x /= length;
@@ -202,7 +211,8 @@ GltfMesh marker_mesh() {
     GltfPrimitive primitive;
     primitive.material = kMarker;
     primitive.points = primitive.normals = ball.points;
-    for (const Triangle& face : faces) primitive.indices.insert(primitive.indices.end(), face.begin(), face.end());
+    for (const Triangle& face : faces)
+        primitive.indices.insert(primitive.indices.end(), face.begin(), face.end());
     return {"marker", {std::move(primitive)}};
 }
 
@@ -217,7 +227,8 @@ double diagonal_of(const std::vector<Point>& points) {
     return std::max(std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]), 1e-30);
 }
 
-void add_cones(const ItemSource& source, const GeometryBlock& cones, GltfDocument& document, GltfScene& scene) {
+void add_cones(const ItemSource& source, const GeometryBlock& cones, GltfDocument& document,
+               GltfScene& scene) {
     constexpr double kSize = 0.01;  // of the surface's diagonal
     document.meshes.push_back(marker_mesh());
     for (std::size_t i = 0; i < cones.cell_count(); ++i)
@@ -227,8 +238,8 @@ void add_cones(const ItemSource& source, const GeometryBlock& cones, GltfDocumen
 }
 
 bool in_the_plane(const std::string& block) {
-    static const std::vector<std::string> names = {"layout", "domains", "outlines", "sides", "layout_generators",
-                                                   "charts"};
+    static const std::vector<std::string> names = {"layout", "domains",           "outlines",
+                                                   "sides",  "layout_generators", "charts"};
     return std::find(names.begin(), names.end(), block) != names.end();
 }
 
@@ -242,7 +253,13 @@ json document_extras(const ItemSource& source, const HandoverOptions& options,
 /// What a viewer shows by itself: the surface once, with the layout as texture where there is one.
 std::vector<std::string> suited_blocks(const ItemSource& source) {
     const bool mapped = source.has_layout() && !source.intrinsic();
-    return {mapped ? "cut_surface" : "surface", "generators", "geodesics", "curves", "loops", "cones", "layout",
+    return {mapped ? "cut_surface" : "surface",
+            "generators",
+            "geodesics",
+            "curves",
+            "loops",
+            "cones",
+            "layout",
             "sides"};
 }
 

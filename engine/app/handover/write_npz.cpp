@@ -45,7 +45,8 @@ void write_npz(const std::string& path, const ItemSource& source, const Handover
         add_block(file, block);
     }
     const std::string text = json_text(about);
-    const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+    const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(text.data()),
+                                              text.size());
     file.add("about", bytes, {bytes.size()});
     file.close();
 }

@@ -22,7 +22,8 @@ std::vector<NamedCurve> curves_of(const GeometryBlock& block) {
     std::vector<NamedCurve> curves;
     for (std::size_t i = 0; i < block.cell_count(); ++i) {
         NamedCurve& curve = curves.emplace_back();
-        curve.name = names == nullptr ? std::to_string(i) : std::get<std::vector<std::string>>(names->values)[i];
+        curve.name =
+            names == nullptr ? std::to_string(i) : std::get<std::vector<std::string>>(names->values)[i];
         curve.length = lengths == nullptr ? 0.0 : (*lengths)[i];
         for (const Index v : block.cell(i)) curve.points.push_back(block.points[static_cast<std::size_t>(v)]);
     }
@@ -44,7 +45,8 @@ void write_obj(const std::string& path, const ItemSource& source, const Handover
         save_textured(path, layout_surface(stored.refinement, stored.layout, model), options.checker);
     } else {
         const GeometryBlock block = make_block(name, source);
-        if (block.kind == CellKind::point) throw UsageError("points are not written as .obj: take .vtp or .npz");
+        if (block.kind == CellKind::point)
+            throw UsageError("points are not written as .obj: take .vtp or .npz");
         if (block.kind == CellKind::polygon)
             save_textured(path, plain_mesh(block));
         else

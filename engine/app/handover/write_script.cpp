@@ -6,7 +6,6 @@
 
 #include "engine/app/console.h"
 #include "engine/app/handover/handover.h"
-#include "engine/app/handover/scene_description.h"
 #include "engine/app/handover/script_templates.h"
 #include "io/store/durable.h"
 
@@ -14,7 +13,9 @@ namespace ricci::app {
 namespace {
 
 constexpr std::array<std::pair<std::string_view, ScriptKind>, 3> kKinds = {
-    {{"blender", ScriptKind::blender}, {"polyscope", ScriptKind::polyscope}, {"paraview", ScriptKind::paraview}}};
+    {{"blender", ScriptKind::blender},
+     {"polyscope", ScriptKind::polyscope},
+     {"paraview", ScriptKind::paraview}}};
 
 /// A file name as a Python expression, whatever its bytes.
 std::string python_name(const std::string& name) {
@@ -59,7 +60,8 @@ ScriptKind script_kind(const std::string& path, const std::string& wanted) {
     const std::string module = std::filesystem::path(path).stem().string();
     for (const char* taken : {"polyscope", "paraview", "bpy", "bmesh", "numpy", "json"})
         if (module == taken)
-            throw UsageError(fmt::format("'{}' is the name of a module that the script needs: take another", path));
+            throw UsageError(
+                fmt::format("'{}' is the name of a module that the script needs: take another", path));
     const std::string inner = std::filesystem::path(path).replace_extension().extension().string();
     for (const auto& [name, kind] : kKinds) {
         const bool named = inner == "." + std::string(name);
@@ -73,15 +75,13 @@ ScriptKind script_kind(const std::string& path, const std::string& wanted) {
 
 void write_script(const std::string& path, ScriptKind kind, const ItemSource& source,
                   const HandoverOptions& options) {
-    HandoverOptions scene = options;
-    if (scene.what.empty()) scene.what = wanted_blocks(source, {}, scene_blocks());
     std::filesystem::path data = stem_of(path);
     if (kind == ScriptKind::paraview) {
         data += ".vtm";
-        write_multiblock(data.string(), {&source}, {""}, scene, true);
+        write_multiblock(data.string(), {&source}, {""}, options, true);
     } else {
         data += ".npz";
-        write_npz(data.string(), source, scene);
+        write_npz(data.string(), source, options);
     }
     write_text_durably(path, with_data(script_of(kind), data.filename().string()));
 }

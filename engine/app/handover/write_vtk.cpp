@@ -26,7 +26,7 @@ std::string only_block(const ItemSource& source, const HandoverOptions& options,
 
 void make_folder(const std::filesystem::path& folder) {
     std::error_code error;
-    std::filesystem::create_directories(folder, error);
+    std::filesystem::create_directory(folder, error);
     if (error) throw system_error(folder.string(), "cannot create the folder", error.value());
 }
 
@@ -45,8 +45,7 @@ std::vector<VtkBlockTree> write_blocks(const ItemSource& source, const HandoverO
     nlohmann::json description;
     if (scene) description = describe_scene(source, options, field);
     std::vector<VtkBlockTree> leaves;
-    for (const std::string& name :
-         wanted_blocks(source, options.what, scene ? scene_blocks() : block_names())) {
+    for (const std::string& name : wanted_blocks(source, options.what, block_names())) {
         const GeometryBlock block = make_block(name, source);
         save_vtk_xml((folder / (name + ".vtp")).string(), block);
         leaves.push_back({name, relative + "/" + name + ".vtp", {}});
@@ -97,13 +96,15 @@ void write_multiblock(const std::string& path, const std::vector<const ItemSourc
     folder.replace_extension(".blocks");
     const std::string relative = folder.filename().string();
     std::vector<VtkBlockTree> tree;
+    make_folder(folder);
     for (std::size_t i = 0; i < sources.size(); ++i) {
         if (sources.size() == 1) {
             tree = write_blocks(*sources[i], options, folder, relative, scene);
             break;
         }
-        tree.push_back({sources[i]->item().item.name, "",
-                        write_blocks(*sources[i], options, folder / names[i], relative + "/" + names[i], scene)});
+        tree.push_back(
+            {sources[i]->item().item.name, "",
+             write_blocks(*sources[i], options, folder / names[i], relative + "/" + names[i], scene)});
     }
     save_vtm(path, tree);
 }

@@ -97,6 +97,7 @@ def checkerboard(squares, dark):
     image = bpy.data.images.new("checkerboard", squares, squares)
     i, j = np.meshgrid(np.arange(squares), np.arange(squares))
     pixels = np.ones((squares, squares, 4), dtype=np.float32)
+    pixels[..., :3] = 0.85
     pixels[(i + j) % 2 == 0, :3] = dark
     image.pixels.foreach_set(pixels.ravel())
     image.pack()
@@ -154,13 +155,14 @@ def add_curves(result, block, collection, radius):
     """Tubes in the colours of pictures: one object for each curve, or for each colour where there are many."""
     cells, points = result.cells(block), result.get(block, "points")
     key = result.blocks[block]["colour_by"]
-    numbers = result.get(block, f"cell_data/{key}") if key else np.zeros(len(cells), dtype=int)
+    numbers = result.get(block, f"cell_data/{key}") if key else np.full(len(cells), -1)
     names = result.texts(block, "cell_data/name")
     groups = {}
     for i, number in enumerate(numbers):
-        groups.setdefault(i if names and len(cells) <= 64 else ("colour", int(number)), []).append(i)
-    for group, members in groups.items():
-        name = f"{block} {names[group]}" if isinstance(group, int) else f"{block} {group[1]}"
+        colour = "boundary" if number < 0 else f"colour {number % len(result.about['curve_colours'])}"
+        groups.setdefault((i, names[i]) if names and len(cells) <= 64 else (0, colour), []).append(i)
+    for (_, label), members in groups.items():
+        name = f"{block} {label}"
         curve = bpy.data.curves.new(name, "CURVE")
         curve.dimensions, curve.bevel_depth, curve.bevel_resolution = "3D", radius, 3
         for i in members:
@@ -211,7 +213,7 @@ def lit_scene(scene):
     world = bpy.data.worlds.new("white")
     world.use_nodes = True
     world.node_tree.nodes["Background"].inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
-    world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.75
+    world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.35
     scene.world = world
     scene.render.film_transparent = True
     scene.view_settings.view_transform = "Standard"
@@ -351,8 +353,8 @@ def build(result):
     if beside is not None:
         low = beside[0] if points is None else np.minimum(low, beside[0])
         high = beside[1] if points is None else np.maximum(high, beside[1])
-    add_light(scene, axes, (-0.5, 0.8, 1.0), 1.6)
-    add_light(scene, axes, (0.9, -0.2, 1.0), 0.5)
+    add_light(scene, axes, (-0.5, 0.8, 1.0), 2.0)
+    add_light(scene, axes, (0.9, -0.2, 1.0), 0.6)
     add_camera(scene, axes, low, high)
     for key in ("item", "source", "software", "command"):
         scene[key] = about[key]

@@ -107,7 +107,7 @@ def show_surface(result, block, view, bar):
     shown.Specular = 0.0
     shown.Interpolation = "Gouraud"
     field = result.about["field"]
-    simple.ColorBy(shown, None)
+    shown.ColorArrayName = ["POINTS", ""]
     data = result.data(block)
     kind = "CELLS" if field and field["of_faces"] else "POINTS"
     attributes = data.GetCellData() if kind == "CELLS" else data.GetPointData()
@@ -128,7 +128,6 @@ def show_surface(result, block, view, bar):
         shown.Texture = simple.CreateTexture(image)
         shown.RepeatTextures = 1
         shown.InterpolateTextures = 0
-        shown.MipmapTextures = 1
     return shown
 
 
@@ -149,8 +148,8 @@ def show_curves(result, block, view, radius):
     shown.Representation = "Surface"
     shown.Specular = 0.0
     if not key:
-        simple.ColorBy(shown, None)
-        shown.AmbientColor = shown.DiffuseColor = colour_of(result, 0)
+        shown.ColorArrayName = ["POINTS", ""]
+        shown.AmbientColor = shown.DiffuseColor = colour_of(result, -1)
         return
     simple.ColorBy(shown, ("CELLS", key))
     numbers = vtk_to_numpy(result.data(block).GetCellData().GetArray(key))
@@ -186,7 +185,7 @@ def show_cones(result, view, radius):
                              registrationName=result.about["blocks"]["cones"]["texts"]["cell_data/name"][i])
         shown = simple.Show(ball, view)
         shown.AmbientColor = shown.DiffuseColor = [0.1, 0.1, 0.1]
-        simple.ColorBy(shown, None)
+        shown.ColorArrayName = ["POINTS", ""]
 
 
 def show_space(result, aspect):

@@ -76,18 +76,22 @@ def show_polygons(result, block, name, enabled):
 
 
 def show_curves(result, block, points, enabled):
-    """One network of curves for each colour, through these points."""
+    """Networks of curves through these points: one for each, or for each colour where there are many."""
     corners, first = result.get(block, "corners"), result.get(block, "first")
     key = result.blocks[block]["colour_by"]
-    numbers = result.get(block, f"cell_data/{key}") if key else np.zeros(len(first) - 1, dtype=int)
+    numbers = result.get(block, f"cell_data/{key}") if key else np.full(len(first) - 1, -1)
     names = result.blocks[block]["texts"].get("cell_data/name")
     colours = result.about["curve_colours"]
-    for number in np.unique(numbers):
-        cells = np.flatnonzero(numbers == number)
+    groups = {}
+    for cell, number in enumerate(numbers):
+        apart = names and len(numbers) <= 64
+        label = f"{cell}: {names[cell]}" if apart else ("boundary" if number < 0 else f"colour {number % len(colours)}")
+        groups.setdefault(label, []).append(cell)
+    for label, cells in groups.items():
         edges = np.concatenate([np.c_[corners[first[c]:first[c + 1] - 1], corners[first[c] + 1:first[c + 1]]]
                                 for c in cells])
         used, edges = np.unique(edges, return_inverse=True)
-        label = names[cells[0]] if names and len(cells) == 1 else str(number)
+        number = numbers[cells[0]]
         colour = result.about["boundary_colour"] if number < 0 else colours[number % len(colours)]
         ps.register_curve_network(f"{block} {label}", points[used], edges.reshape(-1, 2), enabled=enabled,
                                   radius=0.004, color=tuple(colour))
