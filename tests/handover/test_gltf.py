@@ -35,6 +35,9 @@ def test_sweep(results, tmp_path, suffix):
         srgb = np.array(about["field"]["colours"][end])
         linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
         assert np.abs(colour[h[f"sweep/{rank}/vertex"]] - linear).max() < 1e-4
+    samples = file.attributes("samples")
+    same(samples["POSITION"], h["mesh/points"][vertex])
+    same(samples["_AREA_DISTORTION"], h["sweep/area_distortion"])
     # A ball at each cone.
     for rank in ("best", "worst"):
         node = next(n for n in file.root["nodes"] if n["name"] == rank)

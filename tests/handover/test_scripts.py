@@ -94,6 +94,7 @@ def test_blender_sweep(results, tmp_path):
     assert surface["colours"] == ["field colour"]
     distortion = np.frombuffer(bytes.fromhex(surface["area_distortion"]), "<f4")
     assert distortion[h["sweep/vertex"]].tobytes() == h["sweep/area_distortion"].astype("<f4").tobytes()
+    assert report["objects"]["samples"]["polygons"] == 20 * len(h["sweep/vertex"])
     best = np.array(report["objects"]["best"]["location"], "<f4")
     assert best.tobytes() == h["mesh/points"][h["sweep/best/vertex"]].astype("<f4").tobytes()
 
@@ -157,7 +158,7 @@ def test_polyscope_others(results, tmp_path, kind):
     assert shown["surfaces"]
     if kind == "sweep":
         assert shown["surfaces"]["surface"]["scalars"]["area_distortion"]["enabled"]
-        assert shown["points"]["cones"]["points"] == 2
+        assert shown["points"]["cones"]["points"] == 2 and shown["points"]["samples"]["points"] == 12
     if kind in ("spectrum", "teichmuller"):
         assert shown["curves"]
     assert ("surface" in shown["surfaces"]) == (kind != "intrinsic")

@@ -57,6 +57,10 @@ def test_sweep(results, tmp_path, read, suffix):
     assert block.data["field"]["item"] == [name]
     assert block.data["field"]["source_hash"] == [attributes[""]["source_hash"]]
     assert block.data["field"]["status_names"][0] == "converged"
+    rows = read(export(results.sweep(), tmp_path / f"samples.{suffix}", "--what", "samples"))
+    same(rows.points, h["mesh/points"][vertex])
+    same(rows.data["point"]["vertex"], vertex)
+    same(rows.data["point"]["area_distortion"], h["sweep/area_distortion"])
     assert block.units["residual_max"] == "rad" and block.units["seconds"] == "s"
     assert block.units["area_distortion"] == "1" and "status" not in block.units
 

@@ -7,6 +7,7 @@ namespace ricci::app::blocks {
 
 GeometryBlock surface(const ItemSource& source);
 GeometryBlock cones(const ItemSource& source);
+GeometryBlock samples(const ItemSource& source);
 
 GeometryBlock cut_surface(const ItemSource& source);
 GeometryBlock layout(const ItemSource& source);

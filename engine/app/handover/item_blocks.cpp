@@ -66,6 +66,8 @@ const std::vector<BlockKind>& kinds() {
          blocks::loops},
         {"cones", [](const ItemSource& s) { return !s.intrinsic() && !blocks::find_cones(s.item()).empty(); },
          blocks::cones},
+        {"samples", [](const ItemSource& s) { return !s.intrinsic() && s.item().sweep.has_value(); },
+         blocks::samples},
         {"charts", [](const ItemSource& s) { return find_result(s.item(), "atlas") != nullptr; },
          blocks::charts}};
     return list;
@@ -98,6 +100,7 @@ std::string reason(const std::string& name, const ItemSource& s) {
         return "no geodesics on the mesh: `ricci spectrum MESH --curves CURVES.vtp -o FILE` stores them";
     if (name == "curves" || name == "loops")
         return "no curves on the mesh: `ricci teichmuller MESH --curves CURVES.vtp -o FILE` stores them";
+    if (name == "samples") return "no sweep: `ricci sweep MESH -o FILE` makes one";
     return "no cones";
 }
 

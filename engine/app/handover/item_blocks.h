@@ -53,6 +53,7 @@ class ItemSource {
 ///   geodesics       of the length spectrum
 ///   curves, loops   behind the coordinates in Teichmueller space
 ///   cones           cone points, with the best and the worst of a sweep
+///   samples         vertices that a sweep has rows for, with these
 ///   charts          of the atlas, each in its own model
 const std::vector<std::string>& block_names();
 

@@ -72,6 +72,28 @@ GeometryBlock cones(const ItemSource& source) {
     return block;
 }
 
+GeometryBlock samples(const ItemSource& source) {
+    const StoredItem& stored = source.item();
+    const std::vector<SweepRow>& rows = stored.sweep->rows;
+    GeometryBlock block;
+    block.kind = CellKind::point;
+    std::vector<std::int32_t> vertex;
+    for (const SweepRow& row : rows) {
+        block.add_cell_of(std::span(&stored.item.points.at(at(row.vertex)), 1));
+        vertex.push_back(row.vertex);
+    }
+    block.point_data = {{"vertex", "", 1, vertex}};
+    for (const DataArray& field : vertex_fields(stored))
+        std::visit(
+            [&]<class T>(const std::vector<T>& values) {
+                std::vector<T> picked;
+                for (const Index v : vertex) picked.push_back(values[at(v)]);
+                block.point_data.push_back({field.name, field.unit, 1, std::move(picked)});
+            },
+            field.values);
+    return block;
+}
+
 GeometryBlock charts(const ItemSource& source) {
     const StoredItem& stored = source.item();
     const StoredArrays arrays(*find_result(stored, "atlas"));

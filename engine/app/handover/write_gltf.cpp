@@ -21,13 +21,14 @@ using nlohmann::json;
 
 /// Materials: the surface plain and with the checkerboard, the boundary's grey, cones, then a colour each for
 /// curves.
-constexpr std::size_t kPlain = 0, kTextured = 1, kBoundary = 2, kMarker = 3, kFirstCurve = 4;
+constexpr std::size_t kPlain = 0, kTextured = 1, kBoundary = 2, kMarker = 3, kPoint = 4, kFirstCurve = 5;
 
 std::vector<GltfMaterial> all_materials() {
     std::vector<GltfMaterial> materials = {{"surface", kWhite, true, false, true},
                                            {"checkerboard", kWhite, true, true, true},
                                            {"boundary", {60, 66, 78}, false, false, false},
-                                           {"cone", {30, 30, 30}, true, false, false}};
+                                           {"cone", {30, 30, 30}, true, false, false},
+                                           {"point", kWhite, false, false, false}};
     for (std::size_t k = 0; k < kCategoryColours.size(); ++k)
         materials.push_back({fmt::format("curve {}", k), kCategoryColours[k], false, false, false});
     return materials;
@@ -140,6 +141,21 @@ GltfMesh surface_mesh(const ItemSource& source, GeometryBlock block, const std::
             primitive.indices.insert(primitive.indices.end(), {cell[0], cell[k], cell[k + 1]});
     }
     primitive.points = std::move(block.points);
+    return {block.name, {std::move(primitive)}};
+}
+
+/// Points in the colours of the field.
+GltfMesh point_mesh(const GeometryBlock& block, const std::optional<ShownField>& field) {
+    GltfPrimitive primitive;
+    primitive.mode = GltfMode::points;
+    primitive.material = kPoint;
+    primitive.points = block.points;
+    const std::vector<double>* values = field ? find_doubles(block.point_data, field->name) : nullptr;
+    if (values != nullptr)
+        for (const double value : *values) primitive.colours.push_back(field->scale.colour_of(value));
+    json units = json::object();
+    add_fields(block, primitive, units);
+    primitive.extras = {{"units", std::move(units)}};
     return {block.name, {std::move(primitive)}};
 }
 
@@ -281,14 +297,17 @@ void write_gltf(const std::string& path, const ItemSource& source, const Handove
     for (const std::string& name : names) {
         GeometryBlock block = make_block(name, source);
         GltfScene& scene = in_the_plane(name) ? plane : space;
-        if (block.kind == CellKind::point) {
+        if (name == "cones") {
             add_cones(source, block, document, scene);
             continue;
         }
         scene.nodes.push_back({name, document.meshes.size(), std::nullopt, 1.0, nullptr});
-        document.meshes.push_back(block.kind == CellKind::line
-                                      ? curve_mesh(block)
-                                      : surface_mesh(source, std::move(block), field, textured));
+        if (block.kind == CellKind::point)
+            document.meshes.push_back(point_mesh(block, field));
+        else if (block.kind == CellKind::line)
+            document.meshes.push_back(curve_mesh(block));
+        else
+            document.meshes.push_back(surface_mesh(source, std::move(block), field, textured));
     }
     for (GltfScene* scene : {&space, &plane})
         if (!scene->nodes.empty()) document.scenes.push_back(std::move(*scene));

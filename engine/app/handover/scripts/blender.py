@@ -192,6 +192,27 @@ def add_cones(result, collection, radius):
         collection.objects.link(shown)
 
 
+def add_samples(result, collection, radius):
+    """Where a sweep has rows for a few vertices only: a ball at each, in the field's colour."""
+    field, points = result.about["field"], result.get("samples", "points")
+    if not field or field["of_faces"] or len(points) > 0.9 * len(result.get("surface", "points")):
+        return
+    ball = bmesh.new()
+    bmesh.ops.create_icosphere(ball, subdivisions=1, radius=radius)
+    corners = np.array([vertex.co for vertex in ball.verts])
+    faces = np.array([[vertex.index for vertex in face.verts] for face in ball.faces])
+    ball.free()
+    mesh = bpy.data.meshes.new("samples")
+    mesh.from_pydata((points[:, None, :] + corners).reshape(-1, 3).tolist(), [],
+                     (np.arange(len(points))[:, None, None] * len(corners) + faces).reshape(-1, 3).tolist())
+    colours = np.repeat(field_colours(field, result.get("samples", f"point_data/{field['name']}")), len(corners), axis=0)
+    layer = mesh.color_attributes.new(name="field colour", type="FLOAT_COLOR", domain="POINT")
+    layer.data.foreach_set("color", colours.astype(np.float32).ravel())
+    mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), dtype=bool))
+    mesh.materials.append(material("samples", colours="field colour"))
+    collection.objects.link(bpy.data.objects.new("samples", mesh))
+
+
 def viewing_axes(points):
     """Right, up and towards the viewer: the least extended axis, a little from above."""
     _, axes = np.linalg.eigh(np.cov(points.T) if len(points) > 3 else np.eye(3))
@@ -275,6 +296,8 @@ def show_space(result, scene, image):
         add_curves(result, name, collection, 0.004 * size)
     if result.has("cones"):
         add_cones(result, collection, 0.012 * size)
+    if result.has("samples") and result.has("surface"):
+        add_samples(result, collection, 0.006 * size)
     return points
 
 

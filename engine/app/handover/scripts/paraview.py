@@ -62,7 +62,7 @@ def viewing_axes(points):
     return np.stack([right, up, towards])
 
 
-def look_at(view, points, axes, aspect):
+def look_at(view, points, axes, aspect, room=0.54):
     """Parallel projection around the points."""
     seen = points @ axes.T
     low, high = seen.min(axis=0), seen.max(axis=0)
@@ -71,7 +71,7 @@ def look_at(view, points, axes, aspect):
     view.CameraFocalPoint = list(middle)
     view.CameraPosition = list(middle + axes[2] * 2.0 * np.linalg.norm(size))
     view.CameraViewUp = list(axes[1])
-    view.CameraParallelScale = 0.54 * max(size[1], size[0] / aspect)
+    view.CameraParallelScale = room * max(size[1], size[0] / aspect)
 
 
 def new_view(name):
@@ -104,7 +104,7 @@ def show_surface(result, block, view, bar):
     shown = simple.Show(result.reader(block), view)
     shown.Representation = "Surface"
     shown.AmbientColor = shown.DiffuseColor = [0.85, 0.85, 0.85]
-    shown.Specular = 0.0
+    shown.Specular, shown.Ambient = 0.0, 0.15
     shown.Interpolation = "Gouraud"
     field = result.about["field"]
     shown.ColorArrayName = ["POINTS", ""]
@@ -119,8 +119,8 @@ def show_surface(result, block, view, bar):
             scale = simple.GetScalarBar(shown.LookupTable, view)
             scale.Title, scale.ComponentTitle = label(field["name"], field["unit"]), ""
             scale.TitleColor = scale.LabelColor = [0.0, 0.0, 0.0]
-            scale.WindowLocation = "Lower Left Corner"
-            scale.ScalarBarLength = 0.35
+            scale.Orientation, scale.WindowLocation, scale.ScalarBarLength = "Horizontal", "Lower Center", 0.4
+            scale.AddRangeLabels = 0
     image = os.path.join(result.folder, "checker.png")
     texture = result.about["blocks"][block]["texture"]
     if texture and os.path.exists(image):
@@ -178,6 +178,20 @@ def show_copies(result, view):
     shown.Interpolation, shown.Ambient, shown.Diffuse = "Flat", 1.0, 0.0
 
 
+def show_samples(result, view, radius):
+    """Where a sweep has rows for a few vertices only: a ball at each, in the field's colour."""
+    field = result.about["field"]
+    known = result.data("samples").GetNumberOfPoints()
+    if not field or field["of_faces"] or known > 0.9 * len(result.points("surface")):
+        return
+    balls = simple.Glyph(Input=result.reader("samples"), GlyphType="Sphere", registrationName="samples as balls")
+    balls.OrientationArray, balls.ScaleArray = ["POINTS", "No orientation array"], ["POINTS", "No scale array"]
+    balls.ScaleFactor, balls.GlyphMode = 2.0 * radius, "All Points"
+    shown = simple.Show(balls, view)
+    simple.ColorBy(shown, ("POINTS", field["name"]))
+    shown.LookupTable = colour_table(field)
+
+
 def show_cones(result, view, radius):
     points = result.points("cones")
     for i, point in enumerate(points):
@@ -204,7 +218,9 @@ def show_space(result, aspect):
         show_curves(result, name, view, 0.004 * size)
     if result.has("cones"):
         show_cones(result, view, 0.012 * size)
-    look_at(view, points, viewing_axes(points), aspect)
+    if result.has("samples") and result.has("surface"):
+        show_samples(result, view, 0.006 * size)
+    look_at(view, points, viewing_axes(points), aspect, 0.66 if result.about["field"] else 0.54)
     return view
 
 

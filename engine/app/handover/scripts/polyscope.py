@@ -49,6 +49,10 @@ def colour_map(field):
     return "coolwarm" if field["low"] < 0.0 < field["high"] else "viridis"
 
 
+def labelled(name, unit):
+    return f"{name} [{unit}]" if unit not in ("", "1") else name
+
+
 def show_polygons(result, block, name, enabled):
     """A block of polygons. One that is cut open is sewn together again: texture coordinates belong to corners."""
     points, corners, first = (result.get(block, key) for key in ("points", "corners", "first"))
@@ -65,8 +69,7 @@ def show_polygons(result, block, name, enabled):
                 continue
             chosen = bool(shown) and shown["name"] == field and shown["of_faces"] == (kind == "faces")
             extra = {"vminmax": (shown["low"], shown["high"]), "cmap": colour_map(shown)} if chosen else {}
-            label = f"{field} [{unit}]" if unit not in ("", "1") else field
-            mesh.add_scalar_quantity(label, values, defined_on=kind, enabled=chosen, **extra)
+            mesh.add_scalar_quantity(labelled(field, unit), values, defined_on=kind, enabled=chosen, **extra)
     texture = result.blocks[block]["texture"]
     if texture:
         uv = result.get(block, f"point_data/{texture}")[corners][places].reshape(-1, 2)
@@ -126,6 +129,10 @@ def main():
     if result.has("cones"):
         cloud = ps.register_point_cloud("cones", result.get("cones", "points"), radius=0.012, color=(0.05, 0.05, 0.05))
         cloud.add_scalar_quantity("cone_curvature [rad]", result.get("cones", "cell_data/cone_curvature"))
+    if result.has("samples"):
+        cloud = ps.register_point_cloud("samples", result.get("samples", "points"), enabled=False, radius=0.006)
+        for field, values, unit in result.fields("samples", "point_data"):
+            cloud.add_scalar_quantity(labelled(field, unit), values.astype(float))
     if result.has("layout"):
         scale, shift = beside(result)
         matrix = np.diag([scale, scale, scale, 1.0])
