@@ -2,127 +2,84 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
-#include <limits>
+#include <map>
 
 #include "engine/app/console.h"
 #include "engine/app/pictures/picture_kinds.h"
 #include "engine/app/records.h"
+#include "engine/app/result_values.h"
+#include "engine/app/stored_layout.h"
 
 namespace ricci::app {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-/// Everything per vertex that an item holds; NaN where a vertex has no value.
-std::vector<PointField> fields_of(const StoredItem& stored) {
-    const std::size_t vertices = stored.item.points.size();
-    std::vector<PointField> fields;
-    if (stored.sweep) {
-        PointField distortion{"area_distortion", std::vector<double>(vertices, kNone)}, steps = distortion,
-                                                                                        residual = distortion;
-        steps.name = "newton_iterations";
-        residual.name = "residual_max";
-        for (const SweepRow& row : stored.sweep->rows) {
-            const auto v = static_cast<std::size_t>(row.vertex);
-            distortion.values[v] = row.area_distortion;
-            steps.values[v] = row.newton_iterations;
-            residual.values[v] = row.residual_max;
-        }
-        fields.push_back(std::move(distortion));
-        fields.push_back(std::move(steps));
-        fields.push_back(std::move(residual));
-        for (const KeptFactor& kept : stored.sweep->kept) {
-            if (kept.vertex == stored.sweep->best)
-                fields.push_back({"best_conformal_factor", kept.conformal_factor});
-            if (kept.vertex == stored.sweep->worst)
-                fields.push_back({"worst_conformal_factor", kept.conformal_factor});
-        }
-    }
-    if (stored.flow) {
-        fields.push_back({"conformal_factor", stored.flow->conformal_factor});
-        fields.push_back({"curvature", stored.flow->curvature});
-        fields.push_back({"target_curvature", stored.flow->target_curvature});
-    }
-    return fields;
-}
-
-/// An array of doubles of a group; empty where there is none.
-std::vector<double> doubles_of(const ResultGroup& group, const std::string& path) {
-    for (const ResultArray& array : group.arrays)
-        if (array.path == path && std::holds_alternative<std::vector<double>>(array.values))
-            return std::get<std::vector<double>>(array.values);
-    return {};
-}
-
-void export_picture(const std::string& file, const StoredItem& item, PictureKind kind, LayoutModel model) {
-    const StoredLayout stored = layout_of(item);
+void export_picture(const std::string& file, const ItemSource& item_source, const ExportOptions& options) {
+    const StoredLayout& stored = item_source.layout();
+    const StoredItem& item = item_source.item();
     const SurfaceMesh mesh = surface_of(item.item);
     PictureSource source;
     source.layout = &stored;
     source.mesh = &mesh;
     source.generators = stored.generators;
-    if (const ResultGroup* quality = find_result(item, "quality")) {
-        source.log_area_ratio = doubles_of(*quality, "log_area_ratio");
+    if (const ResultGroup* quality = result_of(item, "quality")) {
+        source.log_area_ratio = values_of<double>(*quality, "log_area_ratio");
         if (source.log_area_ratio.size() != item.item.triangles.size()) source.log_area_ratio.clear();
-        const std::vector<double> ratio = doubles_of(*quality, "angles/ratio");
-        for (const ResultArray& array : quality->arrays) {
-            if (array.path != "angles/kind" ||
-                !std::holds_alternative<std::vector<std::uint8_t>>(array.values))
-                continue;
-            const auto& kinds = std::get<std::vector<std::uint8_t>>(array.values);
-            for (std::size_t c = 0; c < std::min(kinds.size(), ratio.size()); ++c) {
-                if (kinds[c] == static_cast<std::uint8_t>(CornerKind::regular))
-                    source.angle_ratio.push_back(ratio[c]);
-                if (kinds[c] == static_cast<std::uint8_t>(CornerKind::curved))
-                    source.curved_angle_ratio.push_back(ratio[c]);
-            }
-        }
+        take_stored_angles(*quality, source);
     }
-    draw_picture(kind, model, source).save(file);
+    draw_picture(parse_picture_kind(options.picture), options.handover.blocks.model, source).save(file);
 }
 
 }  // namespace
 
-const ResultGroup* find_result(const StoredItem& stored, const std::string& kind) {
-    const auto found = std::find_if(stored.results.begin(), stored.results.end(),
-                                    [&](const ResultGroup& group) { return group.kind == kind; });
-    return found == stored.results.end() ? nullptr : &*found;
-}
-
-StoredLayout layout_of(const StoredItem& stored) {
-    const ResultGroup* found = find_result(stored, "layout");
-    if (found == nullptr)
+ExportFormat export_format_of(const std::string& output) {
+    static const std::map<std::string, ExportFormat> formats = {
+        {".csv", ExportFormat::csv},    {".vtu", ExportFormat::vtk},        {".vtp", ExportFormat::vtk},
+        {".vtkhdf", ExportFormat::vtk}, {".vtm", ExportFormat::multiblock}, {".glb", ExportFormat::gltf},
+        {".gltf", ExportFormat::gltf},  {".obj", ExportFormat::obj},        {".npz", ExportFormat::npz},
+        {".svg", ExportFormat::svg},    {".py", ExportFormat::script}};
+    const auto found = formats.find(std::filesystem::path(output).extension().string());
+    if (found == formats.end())
         throw UsageError(
-            fmt::format("{} has no layout: `ricci layout MESH -o FILE` makes one", stored.item.name));
-    return read_layout_group(*found, stored.item.triangles.size());
+            fmt::format("'{}': export writes .vtu, .vtp, .vtm, .vtkhdf, .glb, .gltf, .obj, .npz, "
+                        ".svg, .csv, and .blender.py, .polyscope.py, .paraview.py",
+                        output));
+    return found->second;
 }
 
-void require_exportable(const std::string& path, const ExportOptions& options) {
-    const auto suffix = std::filesystem::path(path).extension().string();
-    if (suffix != ".vtu" && suffix != ".vtkhdf" && suffix != ".obj" && suffix != ".svg")
-        throw UsageError(fmt::format("'{}': export writes .vtu, .vtkhdf, .obj, .svg and .csv", path));
+ExportOptions checked_options(const std::string& path, ExportOptions options) {
+    const ExportFormat format = export_format_of(path);
+    options.handover.blocks.model = parse_layout_model(options.model);
     parse_picture_kind(options.picture);
-    parse_layout_model(options.model);
+    if (format == ExportFormat::script)
+        script_kind(path, options.program);
+    else if (!options.program.empty())
+        throw UsageError("--for goes with a .py");
+    for (const std::string& name : options.handover.what) require_block_name(name);
+    return options;
 }
 
-void export_item(const StoredItem& stored, const std::string& path, const ExportOptions& options) {
-    require_exportable(path, options);
-    const auto suffix = std::filesystem::path(path).extension().string();
-    const LayoutModel model = parse_layout_model(options.model);
-    if (suffix == ".svg") {
-        export_picture(path, stored, parse_picture_kind(options.picture), model);
-    } else if (stored.item.points.empty()) {
-        throw UsageError(stored.item.name + " is an intrinsic surface without points");
-    } else if (suffix == ".obj") {
-        const StoredLayout layout = layout_of(stored);
-        save_textured(path, textured_surface(layout.refinement, layout.layout, model), options.checker);
-    } else if (suffix == ".vtu") {
-        export_vtu(path, stored.item, fields_of(stored));
-    } else {
-        export_vtkhdf(path, stored.item, fields_of(stored));
+void export_item(const std::string& path, const ItemSource& source, const ExportOptions& options) {
+    const HandoverOptions& handover = options.handover;
+    switch (export_format_of(path)) {
+        case ExportFormat::vtk:
+            return write_vtk(path, source, handover);
+        case ExportFormat::multiblock:
+            return write_multiblock(path, {&source}, {""}, handover);
+        case ExportFormat::gltf:
+            return write_gltf(path, source, handover);
+        case ExportFormat::obj:
+            return write_obj(path, source, handover);
+        case ExportFormat::npz:
+            return write_npz(path, source, handover);
+        case ExportFormat::script:
+            return write_script(path, script_kind(path, options.program), source, handover);
+        case ExportFormat::csv:
+            throw UsageError("'" + path + "': .csv holds the rows of a whole run, not of an item");
+        case ExportFormat::svg:
+            break;
     }
+    export_picture(path, source, options);
 }
 
 }  // namespace ricci::app

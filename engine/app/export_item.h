@@ -1,33 +1,32 @@
-// One stored item as a file of another kind.
+// One stored item as a file, or several, of another kind.
 #pragma once
 
 #include <string>
 
-#include "engine/app/stored_layout.h"
+#include "engine/app/handover/handover.h"
 #include "io/store/run_store.h"
 
 namespace ricci::app {
 
-/// The result group of a kind; null where the item has none.
-const ResultGroup* find_result(const StoredItem& stored, const std::string& kind);
+enum class ExportFormat : std::uint8_t { csv, vtk, multiblock, gltf, obj, npz, svg, script };
 
-/// The layout of an item. Throws UsageError where it has none.
-StoredLayout layout_of(const StoredItem& stored);
+/// By the suffix. Throws UsageError naming those that there are.
+ExportFormat export_format_of(const std::string& path);
 
-/// What an export of a layout shows: the model of its coordinates, the picture (.svg), a checkerboard of so
-/// many squares (.obj; 0: none). Names as on the command line.
+/// What an export shows, with names as on the command line.
 struct ExportOptions {
-    std::string model = "auto", picture = "domain";
-    int checker = 0;
+    std::string model = "auto";      // of a layout's coordinates; decides handover.blocks.model
+    std::string picture = "domain";  // of .svg
+    std::string program;             // of .py: blender, polyscope, paraview; "": by the file's name
+    HandoverOptions handover;
 };
 
-/// Complains about options that there are not, and about suffixes other than .vtu, .vtkhdf, .obj and .svg.
-/// Throws UsageError.
-void require_exportable(const std::string& path, const ExportOptions& options);
+/// The options with their names looked up. Throws UsageError for a suffix, a model, a picture, a program or a
+/// block that there is not.
+ExportOptions checked_options(const std::string& path, ExportOptions options);
 
-/// Writes .vtu or .vtkhdf with all that the item holds per vertex, .obj of its layout with texture
-/// coordinates, or a picture as .svg. Throws UsageError where the item lacks what is to be written;
-/// FileError.
-void export_item(const StoredItem& stored, const std::string& path, const ExportOptions& options);
+/// Writes everything but .csv, which has rows of a whole run; several files where the format needs it
+/// (docs/handover.md). Throws UsageError where the item lacks what is to be written; FileError.
+void export_item(const std::string& path, const ItemSource& source, const ExportOptions& options);
 
 }  // namespace ricci::app

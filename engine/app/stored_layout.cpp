@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "engine/app/console.h"
+#include "engine/app/stored_arrays.h"
 #include "io/mesh/mesh_file.h"
 
 namespace ricci::app {
@@ -14,45 +14,6 @@ namespace {
 std::size_t at(Index i) {
     return static_cast<std::size_t>(i);
 }
-
-/// Arrays of a group by path.
-class StoredArrays {
-  public:
-    explicit StoredArrays(const ResultGroup& group) {
-        for (const ResultArray& array : group.arrays) arrays_[array.path] = &array;
-        item_ = group.item;
-    }
-    [[nodiscard]] bool has(const std::string& path) const { return arrays_.contains(path); }
-    template <class T>
-    [[nodiscard]] const std::vector<T>& list(const std::string& path) const {
-        const auto found = arrays_.find(path);
-        const auto* values =
-            found == arrays_.end() ? nullptr : std::get_if<std::vector<T>>(&found->second->values);
-        if (values == nullptr)
-            throw FileError(item_ + ": layout/" + path + " is missing or not of the type it should be");
-        return *values;
-    }
-    template <std::size_t n>
-    [[nodiscard]] std::vector<std::array<double, n>> rows(const std::string& path) const {
-        const std::vector<double>& values = list<double>(path);
-        if (values.size() % n != 0) throw FileError(item_ + ": layout/" + path + " has not the right shape");
-        std::vector<std::array<double, n>> result(values.size() / n);
-        for (std::size_t i = 0; i < values.size(); ++i) result[i / n][i % n] = values[i];
-        return result;
-    }
-    [[nodiscard]] std::vector<Isometry<double>> isometries(const std::string& path) const {
-        std::vector<Isometry<double>> result;
-        for (const auto& [ar, ai, br, bi] : rows<4>(path)) result.push_back({{ar, ai}, {br, bi}});
-        return result;
-    }
-    void require(bool holds, const char* what) const {
-        if (!holds) throw FileError(item_ + ": layout/: " + what);
-    }
-
-  private:
-    std::map<std::string, const ResultArray*> arrays_;
-    std::string item_;
-};
 
 /// Whether all lie in low ... limit - 1.
 bool all_in(const std::vector<Index>& values, Index low, std::size_t limit) {
@@ -109,25 +70,12 @@ CommonRefinement read_refinement(const StoredArrays& arrays, std::size_t faces) 
     return r;
 }
 
-/// Lists that lie one after another: <path>, <path>_first.
-std::vector<std::vector<Index>> read_lists(const StoredArrays& arrays, const std::string& path) {
-    const auto& all = arrays.list<Index>(path);
-    const auto& first = arrays.list<Index>(path + "_first");
-    arrays.require(!first.empty() && first.front() == 0 && at(first.back()) == all.size() &&
-                       std::is_sorted(first.begin(), first.end()),
-                   "lists do not fit together");
-    std::vector<std::vector<Index>> lists;
-    for (std::size_t k = 0; k + 1 < first.size(); ++k)
-        lists.emplace_back(all.begin() + first[k], all.begin() + first[k + 1]);
-    return lists;
-}
-
 CutGraph read_cut(const StoredArrays& arrays, std::size_t faces) {
     CutGraph cut;
     const auto& name = arrays.list<std::string>("sides/name");
     const auto& partner = arrays.list<Index>("sides/partner");
     const auto& boundary = arrays.list<Index>("sides/boundary");
-    std::vector<std::vector<Index>> halfedges = read_lists(arrays, "sides/halfedge");
+    std::vector<std::vector<Index>> halfedges = arrays.lists("sides/halfedge");
     arrays.require(
         partner.size() == name.size() && boundary.size() == name.size() && halfedges.size() == name.size(),
         "sides do not fit together");
@@ -147,11 +95,8 @@ StoredLayout read_layout_group(const ResultGroup& group, std::size_t faces) {
     stored.refinement = read_refinement(arrays, faces);
     stored.cut = read_cut(arrays, faces);
     SurfaceLayout& layout = stored.layout;
-    for (const ResultAttribute& attribute : group.attributes)
-        if (attribute.name == "geometry" && std::holds_alternative<std::string>(attribute.value)) {
-            const std::string& geometry = std::get<std::string>(attribute.value);
-            layout.kappa = geometry == "hyperbolic" ? -1 : (geometry == "spherical" ? 1 : 0);
-        }
+    if (const auto* geometry = find_attribute<std::string>(group, "geometry"))
+        layout.kappa = *geometry == "hyperbolic" ? -1 : (*geometry == "spherical" ? 1 : 0);
     layout.position = arrays.rows<3>("position");
     layout.refinement_vertex = arrays.list<Index>("refinement_vertex");
     layout.corner_vertex = arrays.list<Index>("corner_vertex");
@@ -173,7 +118,7 @@ StoredLayout read_layout_group(const ResultGroup& group, std::size_t faces) {
     arrays.require(all_moderate(layout.position), "a position is not finite, or beyond 1e150");
     layout.base_frame = base.front();
     for (std::size_t k = 0; k < side.size(); ++k) layout.pairings.push_back({side[k], element[k], spread[k]});
-    stored.generators = read_lists(arrays, "generators/path");
+    stored.generators = arrays.lists("generators/path");
     for (const std::vector<Index>& loop : stored.generators)
         arrays.require(all_in(loop, 0, vertices), "a generator runs through a vertex that does not exist");
     if (arrays.has("copies/element")) stored.copies = arrays.isometries("copies/element");
@@ -205,16 +150,31 @@ std::array<double, 2> model_point(LayoutModel model, int kappa, const std::array
     return conformal_point(kappa, position);
 }
 
+namespace {
+
+std::array<double, 2> finite_or_origin(const std::array<double, 2>& uv) {
+    return std::isfinite(uv[0]) && std::isfinite(uv[1]) ? uv : std::array<double, 2>{};
+}
+
+}  // namespace
+
+std::vector<std::array<double, 2>> texture_coordinates(const SurfaceLayout& layout, LayoutModel model) {
+    const bool disk = layout.kappa != 0 && !(layout.kappa < 0 && model == LayoutModel::half_plane);
+    std::vector<std::array<double, 2>> texture;
+    texture.reserve(layout.position.size());
+    for (const auto& p : layout.position) {
+        std::array<double, 2> uv = model_point(model, layout.kappa, p);
+        if (disk) uv = {(uv[0] + 1) / 2, (uv[1] + 1) / 2};
+        texture.push_back(finite_or_origin(uv));
+    }
+    return texture;
+}
+
 TexturedMesh textured_surface(const CommonRefinement& r, const SurfaceLayout& layout, LayoutModel model) {
     if (r.points.empty()) throw UsageError("an intrinsic surface has no points in space to write");
     TexturedMesh out;
     out.points = r.points;
-    const bool disk = layout.kappa != 0 && !(layout.kappa < 0 && model == LayoutModel::half_plane);
-    for (const auto& p : layout.position) {
-        std::array<double, 2> uv = model_point(model, layout.kappa, p);
-        if (disk) uv = {(uv[0] + 1) / 2, (uv[1] + 1) / 2};
-        out.uv.push_back(uv);
-    }
+    out.uv = texture_coordinates(layout, model);
     for (Index c = 0; c < r.corner_count(); ++c)
         out.corners.push_back({r.vertex[at(c)], layout.corner_vertex[at(c)]});
     out.face_start = r.first;
@@ -226,7 +186,7 @@ TexturedMesh layout_surface(const CommonRefinement& r, const SurfaceLayout& layo
     for (const auto& p : layout.position) {
         const std::array<double, 2> uv = model_point(model, layout.kappa, p);
         out.points.push_back(layout.kappa > 0 ? Point{p[0], p[1], p[2]} : Point{uv[0], uv[1], 0.0});
-        out.uv.push_back(uv);
+        out.uv.push_back(finite_or_origin(uv));
     }
     for (const Index v : layout.corner_vertex) out.corners.push_back({v, v});
     out.face_start = r.first;

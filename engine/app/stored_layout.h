@@ -30,8 +30,12 @@ StoredLayout read_layout_group(const ResultGroup& group, std::size_t faces);
 /// The same of a structure of this mesh that has not been stored; without copies.
 StoredLayout stored_layout_of(const SurfaceMesh& mesh, const SurfaceStructure& structure);
 
+/// Layout coordinates as texture coordinates: of disk models and the sphere moved from [-1, 1] to [0, 1]. A
+/// vertex without an image (at the centre of the stereographic projection) has (0, 0). // L
+std::vector<std::array<double, 2>> texture_coordinates(const SurfaceLayout& layout, LayoutModel model);
+
 /// The refined input with layout coordinates as texture coordinates: convex pieces, the input's vertices
-/// first. Disk models are moved from [-1, 1] to [0, 1]. Throws UsageError for an intrinsic surface.
+/// first. Throws UsageError for an intrinsic surface.
 TexturedMesh textured_surface(const CommonRefinement& refinement, const SurfaceLayout& layout,
                               LayoutModel model);
 

@@ -207,7 +207,8 @@ py::tuple distances(const std::string& path, Index genus, Index boundaries, cons
         app::TypeDistances result;
         const auto bucket = IndexReader(path).bucket(genus, boundaries);
         if (!bucket) throw app::UsageError(path + ": holds no shape of type " + type_name(genus, boundaries));
-        with_thread_limit(resolved(threads), [&] { result = app::measure_distances(*bucket, m, l, clusters); });
+        with_thread_limit(resolved(threads),
+                          [&] { result = app::measure_distances(*bucket, m, l, clusters); });
         return result;
     }));
     const py::capsule owner(d, [](void* p) { delete static_cast<app::TypeDistances*>(p); });

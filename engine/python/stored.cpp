@@ -160,8 +160,18 @@ py::dict info(const RunInfo& i) {
 }
 
 void export_one(const Stored& stored, const std::string& path, const std::string& model,
-                const std::string& picture, int checker) {
-    run_call(py::none(), [&](Call&) { app::export_item(stored.item, path, {model, picture, checker}); });
+                const std::string& picture, int checker, const std::vector<std::string>& what,
+                const std::string& field) {
+    app::ExportOptions options;
+    options.model = model;
+    options.picture = picture;
+    options.handover.checker = checker;
+    options.handover.what = what;
+    options.handover.field = field;
+    run_call(py::none(), [&](Call&) {
+        const app::ExportOptions checked = app::checked_options(path, options);
+        app::export_item(path, app::ItemSource(*stored.info, stored.item, checked.handover.blocks), checked);
+    });
 }
 
 /// What the item's sweep was asked to keep: by the run's configuration, where it says, else by what is there.
@@ -226,8 +236,8 @@ void add_stored(py::module_& m) {
         .def_readonly("area", &Stored::area)
         .def_readonly("max_length_error", &Stored::max_length_error)
         .def_readonly("mean_length_error", &Stored::mean_length_error)
-        .def("export", &export_one, py::arg("path"), py::arg("model"), py::arg("picture"),
-             py::arg("checker"));
+        .def("export", &export_one, py::arg("path"), py::arg("model"), py::arg("picture"), py::arg("checker"),
+             py::arg("what"), py::arg("field"));
     py::class_<Run, std::shared_ptr<Run>>(m, "Run")
         .def_readonly("items", &Run::items)
         .def_readonly("complete", &Run::complete)

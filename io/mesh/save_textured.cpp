@@ -37,7 +37,8 @@ void require_valid(const TexturedMesh& mesh) {
     for (std::size_t f = 0; f + 1 < mesh.face_start.size(); ++f)
         require(mesh.face_start[f + 1] >= mesh.face_start[f] + 3, "a face has fewer than three corners");
     for (const TexturedCorner& corner : mesh.corners)
-        require(below(corner.point, mesh.points.size()) && below(corner.uv, mesh.uv.size()),
+        require(below(corner.point, mesh.points.size()) &&
+                    (corner.uv == kNoTexture || below(corner.uv, mesh.uv.size())),
                 "a corner names a point or coordinates that do not exist");
 }
 
@@ -51,7 +52,8 @@ std::string obj_text(const TexturedMesh& mesh, const std::string& material_file)
         out << "f";
         for (Index i = mesh.face_start[f]; i < mesh.face_start[f + 1]; ++i) {
             const TexturedCorner& corner = mesh.corners[static_cast<std::size_t>(i)];
-            out << " " << corner.point + 1 << "/" << corner.uv + 1;
+            out << " " << corner.point + 1;
+            if (corner.uv != kNoTexture) out << "/" << corner.uv + 1;
         }
         out << "\n";
     }

@@ -9,7 +9,9 @@
 
 namespace ricci {
 
-/// One corner of a face: numbers of its point and of its texture coordinates.
+inline constexpr Index kNoTexture = -1;
+
+/// One corner of a face: numbers of its point and of its texture coordinates, or kNoTexture.
 struct TexturedCorner {
     Index point = 0, uv = 0;
     bool operator==(const TexturedCorner&) const = default;

@@ -46,13 +46,16 @@ std::string rows_of(int squares) {
 
 }  // namespace
 
-std::string checker_png(int squares) {
+std::string checker_png(int squares, std::uint8_t dark) {
     std::string header;
     append_number(header, static_cast<std::uint32_t>(16 * squares));
     append_number(header, static_cast<std::uint32_t>(16 * squares));
-    header.append({1, 0, 0, 0, 0});  // one bit, grey; deflate, no filter, not interlaced
+    const char kind = dark == 0 ? '\0' : '\3';  // grey, or a palette
+    header.append({1, kind, 0, 0, 0});          // one bit; deflate, no filter, not interlaced
     std::string png = "\x89PNG\r\n\x1A\n";
     append_chunk(png, "IHDR", header);
+    if (dark != 0)
+        append_chunk(png, "PLTE", std::string(3, static_cast<char>(dark)) + std::string(3, '\xFF'));
     append_chunk(png, "IDAT", packed(rows_of(squares)));
     append_chunk(png, "IEND", "");
     return png;

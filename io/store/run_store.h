@@ -204,15 +204,7 @@ StoredRun read_run(const std::string& path);
 /// Throws FileError when no child can be had.
 std::vector<std::string> verify_structure(const std::string& path);
 
-/// Exports, written under a temporary name and renamed: ".vtu" (XML with inline base64 arrays) and ".vtkhdf"
-/// (VTKHDF 1.0) of one item with point fields; ".csv" of the sweep rows of all items. The item needs points
-/// and the fields V values (std::invalid_argument). Throw FileError.
-struct PointField {
-    std::string name;
-    std::vector<double> values;  // V
-};
-void export_vtu(const std::string& path, const ItemRecord& item, const std::vector<PointField>& fields);
-void export_vtkhdf(const std::string& path, const ItemRecord& item, const std::vector<PointField>& fields);
+/// Rows of the sweeps of all items as ".csv", written under a temporary name and renamed. Throws FileError.
 void export_csv(const std::string& path, const StoredRun& run);
 
 }  // namespace ricci

@@ -1,4 +1,4 @@
-// What other programs read: h5py, ParaView's formats, CSV.
+// What other programs read: h5py, CSV.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -97,103 +97,8 @@ TEST(StoreExport, Csv) {
               "\"a, \"\"b\"\"@8\",4,max_iterations,nan,9,2e-12,12,0.25,1,16\n");
 }
 
-std::vector<PointField> sample_fields(const ItemRecord& item) {
-    PointField field{"u & \"v\" <1>", {}};
-    for (Index v = 0; v < item.vertices; ++v) field.values.push_back(v / 3.0);
-    return {field, {"zero", std::vector<double>(static_cast<std::size_t>(item.vertices), 0.0)}};
-}
-
-constexpr const char* kReadVtu = R"(
-import sys, base64, struct, xml.etree.ElementTree as ET
-root = ET.parse(sys.argv[1]).getroot()
-assert root.tag == 'VTKFile' and root.get('header_type') == 'UInt64'
-piece = root.find('UnstructuredGrid/Piece')
-n, f = int(piece.get('NumberOfPoints')), int(piece.get('NumberOfCells'))
-def values(a, letter):
-    raw = base64.b64decode(a.text)
-    size, = struct.unpack_from('<Q', raw)
-    assert size == len(raw) - 8
-    return struct.unpack_from('<%d%s' % (size // struct.calcsize(letter), letter), raw, 8)
-assert (n, f) == (16, 32)
-assert len(values(piece.find('Points/DataArray'), 'd')) == 3 * n
-cells = {a.get('Name'): a for a in piece.findall('Cells/DataArray')}
-assert max(values(cells['connectivity'], 'i')) == n - 1
-assert values(cells['offsets'], 'q') == tuple(range(3, 3 * f + 1, 3))
-assert values(cells['types'], 'B') == (5,) * f
-data = {a.get('Name'): values(a, 'd') for a in piece.findall('PointData/DataArray')}
-assert data['u & "v" <1>'] == tuple(v / 3.0 for v in range(n)) and data['zero'] == (0.0,) * n
-print('good')
-)";
-
-TEST(StoreExport, VtuIsXmlWithTheSameNumbers) {
-    if (!has_module("xml.etree.ElementTree")) GTEST_SKIP() << "no " << kPython;
-    const TemporaryFolder folder;
-    const ItemRecord item = sample_item("a@32", 4);
-    export_vtu(folder.file("a.vtu"), item, sample_fields(item));
-    EXPECT_EQ(run_python(folder, kReadVtu, folder.file("a.vtu")), "good\n");
-}
-
-constexpr const char* kReadWithVtk = R"(
-import sys
-from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
-from vtkmodules.vtkIOHDF import vtkHDFReader
-for reader, path in ((vtkXMLUnstructuredGridReader(), sys.argv[1]), (vtkHDFReader(), sys.argv[2])):
-    reader.SetFileName(path)
-    reader.Update()
-    grid = reader.GetOutput()
-    assert grid.GetNumberOfPoints() == 16 and grid.GetNumberOfCells() == 32, path
-    assert grid.GetCellType(31) == 5 and grid.GetCell(0).GetPointId(1) == 4, path
-    field = grid.GetPointData().GetArray('u & "v" <1>')
-    assert [field.GetValue(v) for v in range(16)] == [v / 3.0 for v in range(16)], path
-    assert grid.GetPoint(0) == (3.0, 0.0, 0.0), path
-print('good')
-)";
-
-TEST(StoreExport, VtkReadsBoth) {
-    if (!has_module("vtkmodules.vtkIOHDF")) GTEST_SKIP() << kPython << " has no vtk with an HDF reader";
-    const TemporaryFolder folder;
-    const ItemRecord item = sample_item("a@32", 4);
-    export_vtu(folder.file("a.vtu"), item, sample_fields(item));
-    export_vtkhdf(folder.file("a.vtkhdf"), item, sample_fields(item));
-    EXPECT_EQ(run_python(folder, kReadWithVtk, folder.file("a.vtu") + " " + folder.file("a.vtkhdf")),
-              "good\n");
-}
-
-constexpr const char* kReadVtkHdf = R"(
-import sys, h5py
-g = h5py.File(sys.argv[1])['VTKHDF']
-assert list(g.attrs['Version']) == [1, 0]
-t = g.attrs.get_id('Type').get_type()
-assert not t.is_variable_str() and t.get_cset() == h5py.h5t.CSET_ASCII and g.attrs['Type'] == b'UnstructuredGrid'
-assert list(g['NumberOfPoints']) == [16] and list(g['NumberOfCells']) == [32]
-assert list(g['NumberOfConnectivityIds']) == [96] and g['Offsets'].shape == (33,) and g['Offsets'][32] == 96
-print('good')
-)";
-
-TEST(StoreExport, VtkHdfLayout) {
-    if (!has_module("h5py")) GTEST_SKIP() << kPython << " has no h5py";
-    const TemporaryFolder folder;
-    const ItemRecord item = sample_item("a@32", 4);
-    export_vtkhdf(folder.file("a.vtkhdf"), item, sample_fields(item));
-    EXPECT_EQ(run_python(folder, kReadVtkHdf, folder.file("a.vtkhdf")), "good\n");
-}
-
-TEST(StoreExport, RefusesWhatCannotBeShown) {
-    const TemporaryFolder folder;
-    ItemRecord item = sample_item("a@32", 4);
-    std::vector<PointField> fields = sample_fields(item);
-    EXPECT_THROW(export_vtu("/no/such/folder/a.vtu", item, fields), FileError);
-    EXPECT_THROW(export_vtkhdf("/no/such/folder/a.vtkhdf", item, fields), FileError);
+TEST(StoreExport, RefusesAFolderThatIsNotThere) {
     EXPECT_THROW(export_csv("/no/such/folder/a.csv", StoredRun()), FileError);
-    fields[1].values.pop_back();
-    EXPECT_THROW(export_vtu(folder.file("a.vtu"), item, fields), std::invalid_argument);
-    fields = {fields[0], fields[0]};
-    EXPECT_THROW(export_vtkhdf(folder.file("a.vtkhdf"), item, fields), std::invalid_argument);
-    item.points.clear();
-    item.twin.resize(96);
-    item.edge_length.resize(96);
-    EXPECT_THROW(export_vtu(folder.file("a.vtu"), item, {}), std::invalid_argument);
-    EXPECT_FALSE(std::filesystem::exists(folder.file("a.vtu")));
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ EdgeChains::EdgeChains(const CommonRefinement& r) {
 }
 
 std::span<const Index> EdgeChains::of(Index h) const {
-    if (h >= halfedge_count()) return {};
+    if (h < 0 || h >= halfedge_count()) return {};
     return std::span(corner_).subspan(at(first_[at(h)]), at(first_[at(h) + 1] - first_[at(h)]));
 }
 

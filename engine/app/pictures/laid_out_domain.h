@@ -15,7 +15,7 @@ class EdgeChains {
     explicit EdgeChains(const CommonRefinement& refinement);
 
     [[nodiscard]] Index halfedge_count() const { return static_cast<Index>(first_.size()) - 1; }
-    /// Those whose sides run along h with their piece on its left; none where that face is lost.
+    /// Those whose sides run along h with their piece on its left; none where that face is lost, or h none.
     [[nodiscard]] std::span<const Index> of(Index h) const;
 
   private:
@@ -37,6 +37,8 @@ class LaidOutDomain {
     [[nodiscard]] ViewBox bounds() const;
     /// Outline of an input face, counterclockwise; empty where the face is lost or not shown.
     [[nodiscard]] std::vector<PlanePoint> face_outline(Index face, double tolerance) const;
+    /// Layout vertices along an input halfedge, both ends included; none where it is lost.
+    [[nodiscard]] std::vector<Index> halfedge_vertices(Index h) const;
     /// Points along an input halfedge; empty where it is lost or not shown.
     [[nodiscard]] std::vector<PlanePoint> edge_points(Index h) const;
     /// Layout vertices along a side, both ends included.
@@ -49,7 +51,6 @@ class LaidOutDomain {
     void append_to(SvgPath& path, std::span<const PlanePoint> points) const;
 
   private:
-    [[nodiscard]] std::vector<Index> halfedge_vertices(Index h) const;
     [[nodiscard]] std::vector<PlanePoint> shown_points(const std::vector<Index>& vertices) const;
 
     const StoredLayout* stored_;

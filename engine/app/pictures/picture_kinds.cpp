@@ -11,6 +11,7 @@
 
 #include "engine/app/console.h"
 #include "engine/app/pictures/layout_pictures.h"
+#include "engine/app/result_values.h"
 #include "io/picture/histogram.h"
 #include "kernels/face_kernels.h"
 #include "kernels/intrinsic_triangulation.h"
@@ -45,10 +46,10 @@ SvgPicture draw_angles(const PictureSource& source) {
     const Histogram regular = count_values(source.angle_ratio, axis, 100);
     std::optional<Histogram> curved;
     if (!source.curved_angle_ratio.empty()) curved = count_values(source.curved_angle_ratio, axis, 100);
-    return draw_histogram(regular, curved,
-                          {"Angle in the layout / angle on the surface", "ratio", "corners",
-                           "where |K| > 5 % of 2 pi"},
-                          ScaleKind::linear, 1.0);
+    return draw_histogram(
+        regular, curved,
+        {"Angle in the layout / angle on the surface", "ratio", "corners", "where |K| > 5 % of 2 pi"},
+        ScaleKind::linear, 1.0);
 }
 
 }  // namespace
@@ -84,6 +85,16 @@ void take_quality(const ConformalityReport& report, PictureSource& source) {
             source.angle_ratio.push_back(report.pieces.ratio[c]);
         if (report.pieces.kind[c] == CornerKind::curved)
             source.curved_angle_ratio.push_back(report.pieces.ratio[c]);
+    }
+}
+
+void take_stored_angles(const ResultGroup& quality, PictureSource& source) {
+    const auto ratio = values_of<double>(quality, "angles/ratio");
+    const auto kind = values_of<std::uint8_t>(quality, "angles/kind");
+    for (std::size_t c = 0; c < std::min(ratio.size(), kind.size()); ++c) {
+        if (kind[c] == static_cast<std::uint8_t>(CornerKind::regular)) source.angle_ratio.push_back(ratio[c]);
+        if (kind[c] == static_cast<std::uint8_t>(CornerKind::curved))
+            source.curved_angle_ratio.push_back(ratio[c]);
     }
 }
 

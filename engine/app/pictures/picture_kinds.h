@@ -8,6 +8,7 @@
 #include "engine/app/stored_layout.h"
 #include "engine/quality/conformality.h"
 #include "io/picture/svg.h"
+#include "io/store/result_group.h"
 #include "kernels/surface_mesh.h"
 
 namespace ricci::app {
@@ -44,6 +45,9 @@ struct PictureSource {
 
 /// Takes what pictures need from a report.
 void take_quality(const ConformalityReport& report, PictureSource& source);
+
+/// Takes the ratios of angles of a stored quality group.
+void take_stored_angles(const ResultGroup& quality, PictureSource& source);
 
 /// Side of the squares of a checkerboard in the layout's own coordinates: about twenty-four across the
 /// domain.

@@ -87,14 +87,7 @@ void add_convergence(const FlowRecord& flow, const ReportContext& context, ItemR
 void add_angles(const StoredItem& item, const SurfaceMesh& mesh, ReportContext& context, ItemReport& out) {
     PictureSource source;
     if (const ResultGroup* quality = result_of(item, "quality")) {
-        const auto ratio = values_of<double>(*quality, "angles/ratio");
-        const auto kind = values_of<std::uint8_t>(*quality, "angles/kind");
-        for (std::size_t c = 0; c < std::min(ratio.size(), kind.size()); ++c) {
-            if (kind[c] == static_cast<std::uint8_t>(CornerKind::regular))
-                source.angle_ratio.push_back(ratio[c]);
-            if (kind[c] == static_cast<std::uint8_t>(CornerKind::curved))
-                source.curved_angle_ratio.push_back(ratio[c]);
-        }
+        take_stored_angles(*quality, source);
     } else if (!context.settings.densify) {
         const ConformalityReport report =
             quality_of(mesh, flow_result_of(*item.flow), context.settings.delaunay);

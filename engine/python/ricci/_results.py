@@ -4,7 +4,7 @@ as one of them does. Numerical outcomes are a status, never an exception."""
 from __future__ import annotations
 
 import os
-from typing import Any, Iterator, Mapping, NamedTuple, Optional, Union
+from typing import Any, Iterator, Mapping, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -56,15 +56,18 @@ class Result:
         """Writes a result file (HDF5, docs/hdf5.md) with the mesh and this result. :func:`ricci.save` joins several."""
         _core.write(os.fspath(path), [self._stored])
 
-    def export(self, path: Path, *, model: str = "auto", picture: str = "domain", checker: int = 0) -> None:
-        """Writes what the item holds for other programs, as `ricci export` does.
+    def export(self, path: Path, *, model: str = "auto", picture: str = "domain", checker: int = 16,
+               what: Sequence[str] = (), field: str = "auto") -> None:
+        """Writes what the item holds for other programs, as `ricci export` does (docs/handover.md).
 
-        .vtu, .vtkhdf: the mesh with everything per vertex, for ParaView. .obj: the refined mesh with the layout as
-        texture coordinates, and a checkerboard of `checker` squares. .svg: a picture of the layout ("domain",
-        "tessellation", "checkerboard", "surface", "distortion", "angles", ...). model: "auto", "plane", "poincare",
-        "klein", "half-plane", "disk", "sphere".
+        .vtp, .vtu, .vtkhdf: one block, the surface with every field unless `what` names another; .vtm: all blocks; .glb,
+        .gltf: surface, curves, layout; .obj: the refined mesh with the layout as texture coordinates and a
+        checkerboard of `checker` squares (0: none); .npz: arrays; .blender.py, .polyscope.py, .paraview.py: a script
+        with its data beside it; .svg: a picture of the layout ("domain", "tessellation", "checkerboard", "surface",
+        "distortion", "angles", ...). model: "auto", "plane", "poincare", "klein", "half-plane", "disk", "sphere".
+        field: what colours the surface.
         """
-        _core.Stored.export(self._stored, os.fspath(path), model, picture, checker)
+        _core.Stored.export(self._stored, os.fspath(path), model, picture, checker, list(what), field)
 
 
 class FlowResult(Result):
@@ -714,9 +717,10 @@ class Item:
         """What failed of it."""
         return [Failure(*row) for row in self._stored.failures]
 
-    def export(self, path: Path, *, model: str = "auto", picture: str = "domain", checker: int = 0) -> None:
+    def export(self, path: Path, *, model: str = "auto", picture: str = "domain", checker: int = 16,
+               what: Sequence[str] = (), field: str = "auto") -> None:
         """As :meth:`Result.export`."""
-        self._stored.export(os.fspath(path), model, picture, checker)
+        self._stored.export(os.fspath(path), model, picture, checker, list(what), field)
 
     def __repr__(self) -> str:
         has = [kind for kind in ("sweep", "flow") if getattr(self, kind) is not None] + self.kinds
