@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/app/export_item.h"
+#include "engine/app/result_values.h"
 #include "engine/app/sweep_config.h"
 #include "engine/flow/status.h"
 #include "engine/python/array_views.h"
@@ -111,7 +112,7 @@ std::vector<std::string> kinds(const Stored& stored) {
 }
 
 const ResultGroup& group_of(const Stored& stored, const std::string& kind) {
-    const ResultGroup* group = app::find_result(stored.item, kind);
+    const ResultGroup* group = app::result_of(stored.item, kind);
     if (group == nullptr) throw py::key_error(kind);
     return *group;
 }

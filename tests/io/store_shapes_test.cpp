@@ -50,7 +50,7 @@ PathRecord sample_path() {
 void expect_same(const std::vector<double>& a, const std::vector<double>& b) {
     ASSERT_EQ(a.size(), b.size());
     for (std::size_t i = 0; i < a.size(); ++i)
-        if (!std::isnan(a[i]) || !std::isnan(b[i])) EXPECT_EQ(a[i], b[i]);
+        EXPECT_TRUE(a[i] == b[i] || (std::isnan(a[i]) && std::isnan(b[i])));
 }
 
 TEST(DistanceFile, ComesBackAsItWas) {
