@@ -25,6 +25,16 @@ struct ReportArguments {
     ReportOptions options;
 };
 
+/// As a shell takes it back.
+std::string quoted(const std::string& word) {
+    constexpr std::string_view kPlain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+    std::string text = "'";
+    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return text + "'";
+}
+
 /// What the file says of itself. `verify`: how to check it.
 PageOrigin origin_of(const std::string& path, const std::string& kind, const RunInfo& info,
                      const std::string& verify) {
@@ -70,7 +80,7 @@ std::string kinds_of(const StoredRun& run) {
 }
 
 PageOrigin fill_page(const ReportArguments& a, ReportPage& page) {
-    const std::string kind = kind_of_file(a.path), verify = "ricci verify " + a.path;
+    const std::string kind = kind_of_file(a.path), verify = "ricci verify " + quoted(a.path);
     if (!kind.empty() && !a.items.empty())
         throw UsageError("--item: " + a.path + " holds no items, but " + kind);
     if (kind == "index") {

@@ -8,7 +8,9 @@
 
 namespace ricci::app {
 
-StoredSettings settings_of(const StoredRun& run) {
+namespace {
+
+StoredSettings parsed_settings(const StoredRun& run) {
     StoredSettings s;
     const toml::table root = parse_toml(run.info.config, "the stored configuration");
     const auto text = [&](const char* key, const std::string& fallback) {
@@ -23,6 +25,16 @@ StoredSettings settings_of(const StoredRun& run) {
     const std::string cone = text("cone_curvature", "");
     if (!cone.empty()) s.cone_curvature = parse_curvature(cone);
     return s;
+}
+
+}  // namespace
+
+StoredSettings settings_of(const StoredRun& run) {
+    try {
+        return parsed_settings(run);
+    } catch (const UsageError& error) {  // nobody typed it: the file is at fault
+        throw FileError(error.what());
+    }
 }
 
 }  // namespace ricci::app

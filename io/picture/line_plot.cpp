@@ -11,7 +11,8 @@ namespace {
 // User units are pixels.
 constexpr double kWidth = 560.0, kPlotHeight = 280.0, kLeft = 70.0, kRight = 18.0, kTop = 40.0, kBelow = 52.0;
 constexpr double kText = 11.0, kLegendRow = 17.0, kLegendColumn = 240.0;
-constexpr std::size_t kDots = 60;  // series with more points are drawn without
+constexpr double kLargest = 1e150;  // beyond, differences and ratios would leave the range of double
+constexpr std::size_t kDots = 60;   // series with more points are drawn without
 
 /// Colours repeat with other dashes.
 Paint series_paint(std::size_t k) {
@@ -130,7 +131,7 @@ void draw_legend(SvgPicture& picture, const std::vector<PlotSeries>& series, dou
 Axis axis_around(const std::vector<double>& values, ScaleKind kind) {
     double low = INFINITY, high = -INFINITY;
     for (const double v : values) {
-        if (!std::isfinite(v) || (kind == ScaleKind::logarithmic && v <= 0.0)) continue;
+        if (!(std::abs(v) <= kLargest) || (kind == ScaleKind::logarithmic && v <= 0.0)) continue;
         low = std::min(low, v);
         high = std::max(high, v);
     }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "io/store/csv_text.h"
 #include "io/store/durable.h"
@@ -53,11 +54,22 @@ DistanceRecord read_record(hid_t parent, const std::string& type) {
     record.merge_height = hdf5::read_array<double>(group, "merge_height", hdf5::Shape{merges});
     record.leaf_order = hdf5::read_array<std::int32_t>(group, "leaf_order", hdf5::Shape{count});
     record.cluster = hdf5::read_array<std::int32_t>(group, "cluster", hdf5::Shape{count});
+    std::vector<std::int32_t> order = record.leaf_order;
+    std::sort(order.begin(), order.end());
+    require(std::adjacent_find(order.begin(), order.end()) == order.end(), group,
+            "leaf_order names a shape twice");
+    const auto finite = [](double x) { return std::isfinite(x); };
+    require(std::all_of(record.distances.begin(), record.distances.end(), finite) &&
+                std::all_of(record.merge_height.begin(), record.merge_height.end(), finite),
+            group, "a distance or a height is not finite");
     require(all_below(record.leaf_order, count) && all_below(record.cluster, std::max<hsize_t>(count, 1)),
             group, "leaf_order or cluster names what is not there");
+    std::vector<std::uint8_t> joined(count + merges, 0);
     for (std::size_t k = 0; k < merges; ++k)
-        require(all_below({record.merge_first[k], record.merge_second[k]}, count + k), group,
-                "a merge joins what is not there yet");
+        for (const std::int32_t cluster : {record.merge_first[k], record.merge_second[k]}) {
+            require(all_below({cluster}, count + k), group, "a merge joins what is not there yet");
+            require(joined[static_cast<std::size_t>(cluster)]++ == 0, group, "a merge joins a cluster again");
+        }
     return record;
 }
 

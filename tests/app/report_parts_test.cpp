@@ -78,14 +78,30 @@ TEST(FittingScale, OneOutlierDoesNotHideTheRest) {
     EXPECT_DOUBLE_EQ(fitting_scale(values).axis.low(), 1.0);
 }
 
+TEST(FittingScale, RoundingGetsNoColours) {
+    std::vector<double> flat(500, 1e-13);
+    flat[3] = -2e-13;
+    EXPECT_DOUBLE_EQ(fitting_scale(flat, 0.0, 1e-3).axis.high(), 1e-3);
+    flat[7] = -6.28;  // a cone among many: it decides, though one in 500 only
+    EXPECT_DOUBLE_EQ(fitting_scale(flat, 0.0, 1e-3).axis.high(), 6.28);
+    // Nearly all alike: the few others are told apart from them.
+    std::vector<double> counts(500, 4.0);
+    counts[5] = 9.0;
+    EXPECT_DOUBLE_EQ(fitting_scale(counts).axis.high(), 9.0);
+    EXPECT_DOUBLE_EQ(median_of({5.0, kNaN, 1.0, 3.0}), 3.0);
+}
+
 TEST(Invariants, BoundsAndCounts) {
     EXPECT_EQ(bounded("", "", "", 1e-12, 1e-10, 1e-6).verdict, Verdict::holds);
     EXPECT_EQ(bounded("", "", "", 1e-8, 1e-10, 1e-6).verdict, Verdict::look);
     EXPECT_EQ(bounded("", "", "", 1e-3, 1e-10, 1e-6).verdict, Verdict::fails);
-    EXPECT_EQ(bounded("", "", "", kNaN, 1e-10, 1e-6).verdict, Verdict::told);
+    EXPECT_EQ(bounded("", "", "", kNaN, 1e-10, 1e-6).verdict, Verdict::look);
+    EXPECT_EQ(bounded("", "", "", INFINITY, 1e-10, 1e-6).verdict, Verdict::fails);
+    EXPECT_EQ(bounded("", "", "", -1.0, 1e-10, 1e-6).verdict, Verdict::fails);
     EXPECT_EQ(bounded("", "", "", kNaN, 1e-10, 1e-6).note, "not recorded");
     EXPECT_EQ(none_of("", "", "", 0, Verdict::fails).verdict, Verdict::holds);
     EXPECT_EQ(none_of("", "", "", 2, Verdict::look).verdict, Verdict::look);
+    EXPECT_EQ(none_of("", "", "", std::optional<std::int64_t>(), Verdict::fails).verdict, Verdict::look);
 }
 
 TEST(ViewMesh, LightSurfacesAreShownAsTheyAre) {
@@ -104,6 +120,12 @@ TEST(ViewMesh, HeavyOnesAreDecimatedAndKnowTheirVertices) {
     EXPECT_LE(view.triangles.size(), 800U);
     EXPECT_GT(view.triangles.size(), 600U);
     EXPECT_EQ(view.faces, mesh.connectivity.face_count());
+    EXPECT_EQ(view.shown, view.points.size());
+    ViewMesh more = view;
+    add_vertices(more, mesh, {17});
+    EXPECT_EQ(more.vertex.back(), 17);
+    EXPECT_EQ(more.points.back(), mesh.points[17]);
+    EXPECT_EQ(more.shown, view.shown);
     for (std::size_t v = 0; v < view.points.size(); ++v) {
         double least = INFINITY;
         std::size_t nearest = 0;
@@ -123,6 +145,7 @@ TEST(ReportPage, TextIsTextWhateverItHolds) {
     ReportPage page;
     page.begin_section("</h2><script>alert(1)</script>");
     page.note("a < b & \"c\"");
+    page.check({"<b>", "<i>", "status", "<img src=x onerror=alert(1)>", "", Verdict::fails, "<u>"});
     page.failure("<img>", "load", "invalid_input", "'x' > y");
     page.end_section();
     Scene scene;
@@ -133,7 +156,8 @@ TEST(ReportPage, TextIsTextWhateverItHolds) {
         page.document({"<file>.h5", "kind", {{"command", "a && b <c>"}}, "key = \"</pre>\"", {"x > y"}});
     EXPECT_EQ(text.find("<script>alert"), std::string::npos);
     EXPECT_EQ(text.find("</script><b>"), std::string::npos);
-    EXPECT_EQ(text.find("<img>"), std::string::npos);
+    for (const char* const tag : {"<img>", "<img ", "<b><", "<u>"})
+        EXPECT_EQ(text.find(tag), std::string::npos) << tag;
     EXPECT_EQ(text.find("</pre>\""), std::string::npos);
     EXPECT_NE(text.find("a &lt; b &amp; "), std::string::npos);
     EXPECT_EQ(text, page.document(
@@ -144,7 +168,8 @@ TEST(NumberText, SixDigits) {
     EXPECT_EQ(number_text(0.1234567), "0.123457");
     EXPECT_EQ(number_text(-0.0), "0");
     EXPECT_EQ(number_text(3e-12), "3e-12");
-    EXPECT_EQ(number_text(kNaN), "&ndash;");
+    EXPECT_EQ(number_text(kNaN), "\u2013");
+    EXPECT_EQ(number_text(INFINITY), "inf");
 }
 
 }  // namespace

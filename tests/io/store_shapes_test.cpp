@@ -72,11 +72,14 @@ TEST(DistanceFile, ComesBackAsItWas) {
 
 TEST(DistanceFile, ATreeThatJoinsWhatIsNotThereYetIsRefused) {
     const TemporaryFolder folder;
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 6; ++k) {
         DistanceRecord r = sample_distances();
         if (k == 0) r.merge_first = {3, 3};
         if (k == 1) r.leaf_order = {0, 1, 3};
         if (k == 2) r.cluster = {0, -1, 1};
+        if (k == 3) r.merge_second = {1, 1};  // a shape that is joined already
+        if (k == 4) r.leaf_order = {0, 1, 1};
+        if (k == 5) r.merge_height[1] = std::numeric_limits<double>::infinity();
         // The writer reads back what it wrote, and so refuses it itself.
         EXPECT_THROW(write_distance_file(folder.file("bad.h5"), sample_info(), {r}), FileError) << k;
     }

@@ -108,7 +108,7 @@ def test_a_click_on_a_vertex_shows_its_row(results, browser):
                 assert float(shown["residual"]) == pytest.approx(sweep["residual_max"][k], rel=1e-5)
                 assert int(shown["flips"]) == sweep["flips"][k]
                 factor = sweep["best/conformal_factor"][v]
-                assert float(shown["conformal factor of best"]) == pytest.approx(factor, rel=1e-4, abs=1e-5)
+                assert float(shown["u of best, log of the scale factor"]) == pytest.approx(factor, rel=1e-4, abs=1e-5)
 
 
 def test_a_vertex_without_a_row_says_so(results, browser):
@@ -132,7 +132,7 @@ def test_a_flow_shows_its_metric(results, browser):
     with h5py.File(results.file("flow")) as file:
         flow = next(iter(file["items"].values()))["flow"]
         v = int(shown["vertex"])
-        assert float(shown["conformal factor"]) == pytest.approx(flow["conformal_factor"][v], rel=1e-4, abs=1e-5)
+        assert float(shown["u, log of the scale factor"]) == pytest.approx(flow["conformal_factor"][v], rel=1e-4, abs=1e-5)
     assert browser.run("return document.querySelectorAll('svg').length;") >= 3
 
 
@@ -158,7 +158,7 @@ def test_the_view_and_the_domain_are_linked(results, browser):
         assert vertex == "20"
     sides = browser.run("""
         const view = document.querySelector('figure.view').view, colours = new Set();
-        for (const c of view.curves) {
+        for (const c of view.curves.filter((c) => c.curve.link)) {
             view.light(c, true, true);
             const lit = document.querySelectorAll('svg .lit');
             if (lit.length < 2 || lit.length % 2) return 'unlinked ' + c.curve.name;
@@ -170,6 +170,8 @@ def test_the_view_and_the_domain_are_linked(results, browser):
         }
         return view.curves.length;""")
     assert sides >= 4
+    hidden = browser.run("return document.querySelector('figure.view').view.curves.filter((c) => !c.line.visible).map((c) => c.curve.name);")
+    assert hidden == ["generator a1", "generator b1", "generator a2", "generator b2"]
 
 
 def test_the_keyboard_turns_and_zooms(results, browser):
@@ -183,19 +185,53 @@ def test_the_keyboard_turns_and_zooms(results, browser):
 
 
 def test_a_decimated_view_says_so_and_keeps_the_numbers(results, browser):
+    browser.open(results.page("flow", "--view-faces", 300))
+    click_middle(browser)
+    assert "nearest vertex" in readout(browser)
     page = results.page("sweep", "--view-faces", 300)
     assert "Decimated for viewing only" in page.read_text()
     browser.open(page)
-    click_middle(browser)
-    assert "nearest vertex" in readout(browser)
+    browser.show("figure.view")
     browser.run("[...document.querySelectorAll('.tools button')].find((b) => b.textContent === 'best').click();")
     with h5py.File(results.file("sweep")) as file:
-        item = next(iter(file["items"].values()))
-        points = item["mesh/points"][:]
-        seen = int(readout(browser)["nearest vertex"])
-        best = int(item["sweep/best/vertex"][()])
-        size = numpy.linalg.norm(points.max(axis=0) - points.min(axis=0))
-        assert numpy.linalg.norm(points[seen] - points[best]) < 0.15 * size
+        sweep = file["items"][browser.run("return document.querySelector('figure.view').view.d.title;")]["sweep"]
+        shown = readout(browser)  # the best one is at hand itself
+        assert int(shown["vertex"]) == int(sweep["best/vertex"][()])
+        assert float(shown["area distortion"]) == pytest.approx(sweep["best/area_distortion"][()], rel=1e-5)
+
+
+def test_a_sample_of_a_decimated_surface_is_all_there(results, browser):
+    browser.open(results.page("failures", "--view-faces", 200))
+    number = browser.run("return [...document.querySelectorAll('figure.view')].length;") - 1
+    browser.show("figure.view", number)
+    with h5py.File(results.file("failures")) as file:
+        title = browser.run("return document.querySelectorAll('figure.view')[arguments[0]].view.d.title;", number)
+        rows = file["items"][title]["sweep/vertex"][:].tolist()
+    assert browser.run("return document.querySelectorAll('figure.view')[arguments[0]].view.dots.geometry.attributes.position.count;",
+                       number) == len(rows)
+    for v in rows:
+        browser.run("document.querySelectorAll('figure.view')[arguments[0]].view.pickVertex(arguments[1]);", number, v)
+        shown = readout(browser, number)
+        assert int(shown["vertex"]) == v and shown["status"] != "no row"
+
+
+def test_one_finger_scrolls(results, browser):
+    browser.driver.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": True})
+    browser.driver.execute_cdp_cmd("Emulation.setEmitTouchEventsForMouse", {"enabled": False})
+    try:
+        browser.size(390, 844)
+        browser.open(results.page("torus"))
+        browser.show("figure.view")
+        trapped = """
+            const canvas = document.querySelector('figure.view canvas'), box = canvas.getBoundingClientRect();
+            const touch = new Touch({identifier: 1, target: canvas, clientX: box.left + 50, clientY: box.top + 50});
+            return !canvas.dispatchEvent(new TouchEvent('touchstart', {touches: [touch], changedTouches: [touch], bubbles: true, cancelable: true}));"""
+        assert not browser.run(trapped)
+        browser.run("[...document.querySelectorAll('.tools button')].find((b) => b.textContent === 'turn by touch').click();")
+        assert browser.run(trapped)
+    finally:
+        browser.driver.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": False})
+        browser.size(1100, 900)
 
 
 def test_failures_come_first(results):

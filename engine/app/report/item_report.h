@@ -27,6 +27,7 @@ struct ReportContext {
     ReportOptions options;
     Index view_faces = 0;          // share of each item
     std::size_t layouts_left = 0;  // of a sweep's metrics that may still be laid out
+    bool draw = true;              // false: checks only, for items that the page has no room for
 
     [[nodiscard]] bool has_room(std::size_t bytes) const {
         return page->size() + bytes < options.page_bytes * 3 / 4;
@@ -40,6 +41,13 @@ struct ItemReport {
     std::vector<PageTable> tables, folded;         // folded: behind their captions
     std::vector<std::string> notes;
 };
+
+/// The rows with the least and the most area distortion among those that converged, ties to the lowest
+/// vertex; null where none did.
+struct SweepExtremes {
+    const SweepRow *best = nullptr, *worst = nullptr;
+};
+SweepExtremes extremes_of(const StoredSweep& sweep);
 
 void add_sweep(const StoredItem& item, const SurfaceMesh& mesh, ReportContext& context, ItemReport& out);
 void add_flow(const StoredItem& item, const SurfaceMesh& mesh, ReportContext& context, ItemReport& out);

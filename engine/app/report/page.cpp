@@ -93,20 +93,30 @@ constexpr const char* kThreeLicence =
 }  // namespace
 
 std::string number_text(double value) {
-    if (!std::isfinite(value)) return "&ndash;";
+    if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+    if (std::isnan(value)) return "\u2013";
     return fmt::format("{:.6g}", value == 0.0 ? 0.0 : value);
 }
 
 Invariant bounded(const std::string& item, const std::string& result, const std::string& quantity,
                   double value, double good, double bad) {
     Invariant i{item, result, quantity, number_text(value), fmt::format("{:.3g}", good), Verdict::holds, ""};
-    if (!std::isfinite(value)) {
-        i.verdict = Verdict::told;
+    if (std::isnan(value)) {
+        i.verdict = Verdict::look;
         i.note = "not recorded";
+    } else if (value < 0.0) {
+        i.verdict = Verdict::fails;
+        i.note = "negative";
     } else if (value > good) {
         i.verdict = value > bad ? Verdict::fails : Verdict::look;
     }
     return i;
+}
+
+Invariant none_of(const std::string& item, const std::string& result, const std::string& quantity,
+                  const std::optional<std::int64_t>& count, Verdict otherwise) {
+    if (count) return none_of(item, result, quantity, *count, otherwise);
+    return {item, result, quantity, "", "0", Verdict::look, "not recorded"};
 }
 
 Invariant none_of(const std::string& item, const std::string& result, const std::string& quantity,
@@ -247,7 +257,7 @@ PageTable ReportPage::checks_table(const std::function<bool(Verdict)>& wanted) c
         const VerdictWords w = words_of(i.verdict);
         table.rows.push_back(
             {fmt::format("<span class=\"verdict {}\">{}&nbsp;{}</span>", w.style, w.mark, w.word),
-             text(i.item), text(i.result), text(i.quantity), i.value, text(i.bound), text(i.note)});
+             text(i.item), text(i.result), text(i.quantity), text(i.value), text(i.bound), text(i.note)});
     }
     return table;
 }
@@ -300,7 +310,7 @@ std::string ReportPage::document(const PageOrigin& origin) const {
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src "
         "'unsafe-inline'; "
-        "style-src 'unsafe-inline'; img-src data: blob:\">\n";
+        "style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'\">\n";
     page +=
         "<title>" + title + "</title>\n<style>\n" + std::string(report_css()) + "</style>\n</head>\n<body>\n";
     page += fmt::format("<header>\n<h1>{}</h1>\n<p>{}</p>\n{}</header>\n", text(origin.file),

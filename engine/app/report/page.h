@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,13 +24,17 @@ struct Invariant {
     std::string note{};
 };
 
-/// A number and the bound it should stay below: fails beyond `bad`, look between the two; NaN: told as "not
-/// recorded".
+/// A number and the bound it should stay below: fails beyond `bad` (and below zero), look between the two,
+/// and for NaN, which stands for "not recorded".
 Invariant bounded(const std::string& item, const std::string& result, const std::string& quantity,
                   double value, double good, double bad);
 /// A count that should be zero; `otherwise` when it is not.
 Invariant none_of(const std::string& item, const std::string& result, const std::string& quantity,
                   std::int64_t count, Verdict otherwise);
+
+/// The same of a count that the file may lack: then look.
+Invariant none_of(const std::string& item, const std::string& result, const std::string& quantity,
+                  const std::optional<std::int64_t>& count, Verdict otherwise);
 
 /// A picture and what is said below it.
 struct PageFigure {

@@ -9,6 +9,7 @@
 #include "engine/app/report/item_report.h"
 #include "engine/app/report/stored_solution.h"
 #include "engine/app/result_values.h"
+#include "engine/app/solve_options.h"
 #include "io/picture/histogram.h"
 #include "io/picture/line_plot.h"
 
@@ -17,14 +18,14 @@ namespace {
 
 void add_fields(const FlowRecord& flow, ItemReport& out) {
     const auto add = [&](const std::string& name, const std::string& unit, const std::vector<double>& values,
-                         std::optional<double> middle) {
+                         std::optional<double> middle, double smallest = 1e-12) {
         SceneField field{name, unit, values, std::nullopt, NumberKind::floats, {}};
-        field.colours = fitting_scale(values, middle);
+        field.colours = fitting_scale(values, middle, smallest);
         out.scene.fields.push_back(std::move(field));
     };
-    add("conformal factor", "log scale", flow.conformal_factor, 0.0);
-    add("curvature of the metric", "rad", flow.curvature, 0.0);
-    add("target curvature", "rad", flow.target_curvature, 0.0);
+    add("u, log of the scale factor", "", flow.conformal_factor, median_of(flow.conformal_factor), 1e-9);
+    add("curvature of the metric", "rad", flow.curvature, 0.0, 1e-3);
+    add("target curvature", "rad", flow.target_curvature, 0.0, 1e-3);
     std::vector<double> error;
     for (std::size_t v = 0; v < flow.curvature.size(); ++v)
         error.push_back(std::abs(flow.curvature[v] - flow.target_curvature[v]));
@@ -89,6 +90,11 @@ void add_angles(const StoredItem& item, const SurfaceMesh& mesh, ReportContext& 
     if (const ResultGroup* quality = result_of(item, "quality")) {
         take_stored_angles(*quality, source);
     } else if (!context.settings.densify) {
+        // Packings keep their triangulation; what is read below relies on that.
+        if (parse_scheme(item.flow->scheme) != Scheme::vertex_scaling &&
+            (item.flow->triangles != item.item.triangles ||
+             item.flow->edge_length.size() != 3 * item.item.triangles.size()))
+            throw FileError("the final triangulation of a circle packing is not that of the mesh");
         const ConformalityReport report =
             quality_of(mesh, flow_result_of(*item.flow), context.settings.delaunay);
         take_quality(report, source);
@@ -121,9 +127,14 @@ void add_flow(const StoredItem& item, const SurfaceMesh& mesh, ReportContext& co
     if (converged) check_metric(context, name, "flow", flow.residual_max, flow.gauss_bonnet_error, sum);
     context.page->check(
         {name, "flow", "digits", fmt::format("{}", flow.precision_digits), "", Verdict::told, ""});
+    const bool finite = std::all_of(flow.conformal_factor.begin(), flow.conformal_factor.end(),
+                                    [](double u) { return std::isfinite(u); });
+    if (!finite)
+        context.page->check({name, "flow", "conformal factor", "not finite", "finite", Verdict::fails, ""});
+    if (!context.draw) return;
     add_fields(flow, out);
     add_convergence(flow, context, out);
-    if (!converged) return;
+    if (!converged || !finite) return;
     try {
         add_angles(item, mesh, context, out);
     } catch (const std::exception& error) {

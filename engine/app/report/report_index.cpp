@@ -8,6 +8,7 @@
 #include <map>
 
 #include "engine/app/console.h"
+#include "engine/app/index_config.h"
 #include "engine/app/index_vectors.h"
 #include "engine/app/pictures/distance_pictures.h"
 #include "engine/app/pictures/draw_path.h"
@@ -172,10 +173,21 @@ void plot_spectra(const ShapeIndex& index, const TypeDistances& d, ReportPage& p
                 caption);
 }
 
+/// That the index was built with.
+double tolerance_of(const ShapeIndex& index) {
+    try {
+        return index_config_from_toml(index.info.fingerprint).tolerance;
+    } catch (const UsageError&) {
+        return IndexConfig{}.tolerance;
+    }
+}
+
 void check_shapes(const ShapeIndex& index, ReportPage& page) {
+    const double tolerance = tolerance_of(index);
     for (const IndexEntry& e : index.entries) {
         const std::string name = shape_name(e.file, e.shape.component, e.shape.components);
-        page.check(bounded(name, "shape", "residual, max |K - target|", e.shape.residual_max, 1e-10, 1e-6));
+        page.check(bounded(name, "shape", "residual, max |K - target|", e.shape.residual_max, tolerance,
+                           std::max(1e-6, 100 * tolerance)));
         page.check(bounded(name, "shape", "Gauss-Bonnet error", e.shape.gauss_bonnet_error, 1e-8, 1e-5));
         if (!e.shape.message.empty())
             page.check({name, "shape", "note", "", "", Verdict::look, e.shape.message});
@@ -260,7 +272,8 @@ void report_index(const std::string& path, const ReportOptions& options, ReportP
     for (const auto& [genus, boundaries] : reader.types()) {
         const IndexBucket bucket = reader.bucket(genus, boundaries).value();
         page.begin_section(fmt::format("Genus {}, {} boundaries", genus, boundaries),
-                           fmt::format("{} shapes of this topological type.", bucket.files.size()));
+                           fmt::format("{} shape{} of this topological type.", bucket.files.size(),
+                                       bucket.files.size() == 1 ? "" : "s"));
         TypeDistances d = measure_distances(bucket, ShapeMetric::spectrum, Linkage::average, 1);
         if (d.names.size() > 1) {
             d.clusters = flat_clusters(d.tree, natural_clusters(d.tree));

@@ -12,16 +12,23 @@
 namespace ricci::app {
 namespace {
 
-/// Items of one source, which are its resolutions (or components).
+/// Items of one surface, which are its resolutions.
 struct SourceGroup {
     std::string source;
     std::vector<const StoredItem*> items;
 };
 
+/// "two.c0" of "two.c0@400": what the resolutions of one surface have in common.
+std::string surface_name(const std::string& item) {
+    return item.substr(0, item.rfind('@'));
+}
+
 std::vector<SourceGroup> grouped(const StoredRun& run) {
     std::vector<SourceGroup> groups;
     for (const StoredItem& item : run.items) {
-        if (groups.empty() || groups.back().source != item.item.source)
+        const std::string surface = surface_name(item.item.name);
+        if (groups.empty() || groups.back().source != item.item.source ||
+            surface_name(groups.back().items.front()->item.name) != surface)
             groups.push_back({item.item.source, {}});
         groups.back().items.push_back(&item);
     }
@@ -44,18 +51,44 @@ void count_note(const ItemReport& out, std::vector<std::string>& notes) {
                         out.scene.mesh.triangles.size(), out.scene.mesh.faces));
 }
 
+/// The surface for viewing. Vertices that were swept stay at hand where they are few, the best and worst
+/// always.
+ViewMesh make_view(const StoredItem& item, const SurfaceMesh& mesh, Index faces) {
+    ViewMesh view = make_view_mesh(mesh, faces);
+    if (!item.sweep) return view;
+    constexpr std::size_t kFewRows = 3000;
+    std::vector<Index> vertices;
+    if (item.sweep->rows.size() <= kFewRows) {
+        for (const SweepRow& row : item.sweep->rows) vertices.push_back(row.vertex);
+    } else {
+        const SweepExtremes extremes = extremes_of(*item.sweep);
+        for (const SweepRow* row : {extremes.best, extremes.worst})
+            if (row != nullptr) vertices.push_back(row->vertex);
+    }
+    add_vertices(view, mesh, vertices);
+    return view;
+}
+
 void write_item(const StoredItem& item, bool alone, ReportContext& context) {
     ReportPage& page = *context.page;
     ItemReport out;
     const SurfaceMesh mesh = surface_of(item.item);
     out.scene.title = item.item.name;
     const bool embedded = !mesh.intrinsic();
-    if (embedded) out.scene.mesh = make_view_mesh(mesh, context.view_faces);
-    if (item.sweep) add_sweep(item, mesh, context, out);
-    if (item.flow) add_flow(item, mesh, context, out);
-    add_structure(item, mesh, context, out);
-    add_spectrum(item, mesh, context, out);
-    add_coordinates(item, mesh, context, out);
+    const auto add = [&](const char* what, auto function) {
+        try {
+            function(item, mesh, context, out);
+        } catch (const std::exception& error) {  // an odd item does not take the page with it
+            page.check({item.item.name, what, "shown on this page", "no", "", Verdict::fails, error.what()});
+        }
+    };
+    if (embedded && context.draw) out.scene.mesh = make_view(item, mesh, context.view_faces);
+    if (item.sweep) add("sweep", add_sweep);
+    if (item.flow) add("flow", add_flow);
+    add("layout", add_structure);
+    add("spectrum", add_spectrum);
+    add("teichmuller", add_coordinates);
+    if (!context.draw) return;
     page.begin_part(alone ? "" : item.item.name, facts_of(item.item));
     std::vector<std::string> notes = out.notes;
     count_note(out, notes);
@@ -88,22 +121,22 @@ void compare_resolutions(const SourceGroup& group, ReportContext& context) {
         const auto converged = std::count_if(sweep.rows.begin(), sweep.rows.end(), [](const SweepRow& r) {
             return r.status == static_cast<std::uint8_t>(Status::converged);
         });
-        const auto distortion = [&](const std::optional<Index>& v) {
-            for (const KeptFactor& kept : sweep.kept)
-                if (v && kept.vertex == *v) return number_text(kept.area_distortion);
-            return std::string("&ndash;");
+        const SweepExtremes extremes = extremes_of(sweep);
+        const auto distortion = [](const SweepRow* row) {
+            return number_text(row == nullptr ? NAN : row->area_distortion);
         };
-        const auto vertex = [](const std::optional<Index>& v) {
-            return v ? fmt::format("{}", *v) : std::string("&ndash;");
+        const auto vertex = [](const SweepRow* row) {
+            return row == nullptr ? std::string("\u2013") : fmt::format("{}", row->vertex);
         };
-        std::optional<Index> source = sweep.best;
-        if (source && !item->item.source_vertex.empty())
-            source = item->item.source_vertex[static_cast<std::size_t>(*source)];
+        std::string source = vertex(extremes.best);
+        if (extremes.best != nullptr && !item->item.source_vertex.empty())
+            source =
+                fmt::format("{}", item->item.source_vertex[static_cast<std::size_t>(extremes.best->vertex)]);
         table.rows.push_back({ReportPage::text(item->item.name), fmt::format("{}", item->item.faces),
                               fmt::format("{}", sweep.rows.size()),
                               fmt::format("{}", sweep.rows.size() - static_cast<std::size_t>(converged)),
-                              vertex(sweep.best), vertex(source), distortion(sweep.best), vertex(sweep.worst),
-                              distortion(sweep.worst)});
+                              vertex(extremes.best), source, distortion(extremes.best),
+                              vertex(extremes.worst), distortion(extremes.worst)});
     }
     if (!table.rows.empty()) context.page->table(table);
 }
@@ -142,8 +175,10 @@ void report_run(const StoredRun& run, const ReportOptions& options, ReportPage& 
     add_comparisons(context);
     std::size_t skipped = 0;
     for (const SourceGroup& group : groups) {
-        if (page.size() > options.page_bytes) {
+        context.draw = page.size() <= options.page_bytes;
+        if (!context.draw) {
             skipped += group.items.size();
+            for (const StoredItem* item : group.items) write_item(*item, false, context);
             continue;
         }
         const std::string name = group.items.front()->item.name;
@@ -154,10 +189,11 @@ void report_run(const StoredRun& run, const ReportOptions& options, ReportPage& 
     }
     if (skipped == 0) return;
     page.begin_section("Not shown");
-    page.note(fmt::format(
-        "{} further items are left out to keep the page small. `ricci report --item NAME` makes a page "
-        "of those named.",
-        skipped));
+    page.note(
+        fmt::format("{} further items are checked but not shown, to keep the page small. `ricci report "
+                    "--item NAME` makes a page "
+                    "of those named.",
+                    skipped));
     page.end_section();
 }
 

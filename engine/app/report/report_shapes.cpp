@@ -130,6 +130,7 @@ void add_spectrum(const StoredItem& item, const SurfaceMesh& mesh, ReportContext
                           {"Length spectrum", "number of the closed geodesic", "length"}),
             "Closed geodesics by length, with their powers and as often as they occur.")});
     }
+    if (!context.draw) return;
     out.folded.push_back(spectrum_table(*spectrum));
     if (mesh.intrinsic()) return;
     std::vector<std::string> names;
@@ -149,6 +150,7 @@ void add_coordinates(const StoredItem& item, const SurfaceMesh& mesh, ReportCont
         context.page->check({item.item.name, "teichmuller", "smallest gap of the marking", number_text(gap),
                              "0.001", gap >= 1e-3 ? Verdict::holds : Verdict::look,
                              "small: nearly another marking, and so other coordinates"});
+    if (!context.draw) return;
     PageTable table{"Teichmueller coordinates", {"name", "value"}, {}, {false, true}};
     const auto names = values_of<std::string>(*group, "names");
     const auto values = values_of<double>(*group, "coordinates");

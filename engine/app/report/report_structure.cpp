@@ -47,6 +47,19 @@ void add_cut(const StoredLayout& stored, const SurfaceMesh& mesh, const std::str
     }
 }
 
+/// The generators' loops, hidden until they are asked for: they run along the cut and across it.
+void add_generators(const StoredLayout& stored, const ResultGroup& layout, const SurfaceMesh& mesh,
+                    ItemReport& out) {
+    const auto names = values_of<std::string>(layout, "generators/name");
+    for (std::size_t g = 0; g < std::min(names.size(), stored.generators.size()) && g < kMostCurves; ++g) {
+        const Paint paint = pair_paint(g, 2.5);
+        SceneCurve curve{"generator " + names[g], "", paint.stroke.value_or(kBlack), true, {}, true};
+        for (const Index v : stored.generators[g])
+            if (at(v) < mesh.points.size()) curve.points.push_back(mesh.points[at(v)]);
+        out.scene.curves.push_back(std::move(curve));
+    }
+}
+
 /// Vertices of the layout that are vertices of the view.
 void add_layout_points(const StoredLayout& stored, const std::string& link, ItemReport& out) {
     const std::set<Index> seen(out.scene.mesh.vertex.begin(), out.scene.mesh.vertex.end());
@@ -89,11 +102,12 @@ void add_domains(const StoredLayout& stored, const std::string& link, ReportCont
     checker.checker = checker_cell(stored);
     checker.pixels = kPixels;
     figures.push_back(page.make_figure("checkerboard", draw_domain(stored, checker),
-                                       "The checkerboard that the view shows on the surface."));
+                                       "The checkerboard that the view shows on the surface.", link));
     out.figures.push_back(std::move(figures));
 }
 
-void add_tessellation(const StoredLayout& stored, ReportContext& context, ItemReport& out) {
+void add_tessellation(const StoredLayout& stored, const std::string& link, ReportContext& context,
+                      ItemReport& out) {
     if (stored.layout.pairings.empty()) return;
     ReportPage& page = *context.page;
     StoredLayout tiled = stored;
@@ -105,7 +119,8 @@ void add_tessellation(const StoredLayout& stored, ReportContext& context, ItemRe
         figures.push_back(page.make_figure(
             fmt::format("tessellation, {}", m.name), draw_tessellation(tiled, m.model, kPixels),
             "Copies of the domain under deck transformations, neighbours in different "
-            "colours: a part of the universal cover."));
+            "colours: a part of the universal cover.",
+            m.model == LayoutModel::klein ? link + " klein" : link));
     out.figures.push_back(std::move(figures));
 }
 
@@ -129,7 +144,11 @@ PageTable generator_table(const ResultGroup& layout, int kappa) {
                 text += (j > 0 ? " &ensp;" : "") + entry(entries[g * n * n + i * n + j]);
             text += i + 1 < n ? "<br>" : "</code>";
         }
-        table.rows.push_back({ReportPage::text(names[g]), ReportPage::text(words[g]), text});
+        const Paint paint = pair_paint(g, 2.5);
+        table.rows.push_back(
+            {fmt::format("<i class=\"swatch\" style=\"background:{}\"></i> {}",
+                         hexadecimal(paint.stroke.value_or(kBlack)), ReportPage::text(names[g])),
+             ReportPage::text(words[g]), text});
     }
     if (two) table.caption += " in SL(2,R)";
     return table;
@@ -138,7 +157,7 @@ PageTable generator_table(const ResultGroup& layout, int kappa) {
 void check_layout(const std::string& item, const ResultGroup& layout, ReportContext& context) {
     ReportPage& page = *context.page;
     const auto number = [&](const char* name) { return attribute_of<double>(layout, name).value_or(NAN); };
-    const auto count = [&](const char* name) { return attribute_of<std::int64_t>(layout, name).value_or(0); };
+    const auto count = [&](const char* name) { return attribute_of<std::int64_t>(layout, name); };
     const auto digits = [&](const char* name) {
         return fmt::format("in {} digits", attribute_of<std::int32_t>(layout, name).value_or(16));
     };
@@ -165,8 +184,10 @@ void add_atlas(const StoredItem& item, const ResultGroup& atlas, ReportContext& 
     page.check(
         bounded(name, kind, "disagreement of charts at vertices", number("vertex_disagreement"), 1e-9, 1e-5));
     page.check(bounded(name, kind, "cocycle error", number("cocycle_error"), 1e-9, 1e-5));
-    page.check(none_of(name, kind, "vertices outside all charts",
-                       attribute_of<std::int32_t>(atlas, "uncovered_vertices").value_or(0), Verdict::look));
+    std::optional<std::int64_t> uncovered;
+    if (const auto stored = attribute_of<std::int32_t>(atlas, "uncovered_vertices")) uncovered = *stored;
+    page.check(none_of(name, kind, "vertices outside all charts", uncovered, Verdict::look));
+    if (!context.draw) return;
     const std::vector<std::vector<Index>> charts = lists_of<Index>(atlas, "charts/vertex");
     SceneField field{
         fmt::format("chart ({})", kind),
@@ -195,18 +216,20 @@ void add_structure(const StoredItem& item, const SurfaceMesh& mesh, ReportContex
         atlas != nullptr && atlas->status == static_cast<std::uint8_t>(Status::converged))
         add_atlas(item, *atlas, context, out);
     if (layout == nullptr || layout->status != static_cast<std::uint8_t>(Status::converged)) return;
-    const StoredLayout stored = read_layout_group(*layout, item.item.triangles.size());
     check_layout(item.item.name, *layout, context);
+    if (!context.draw) return;
+    const StoredLayout stored = read_layout_group(*layout, item.item.triangles.size());
     const std::string link = context.page->new_link();
     if (!mesh.intrinsic()) {
         add_cut(stored, mesh, link, out);
+        add_generators(stored, *layout, mesh, out);
         add_layout_points(stored, link, out);
         if (std::optional<SceneTexture> texture = layout_texture("checkerboard of the layout", stored);
             texture && context.has_room(26 * texture->triangles.size()))
             out.scene.textures.push_back(std::move(*texture));
     }
     add_domains(stored, link, context, out);
-    add_tessellation(stored, context, out);
+    add_tessellation(stored, link, context, out);
     PageTable table = generator_table(*layout, stored.layout.kappa);
     if (!table.rows.empty()) out.folded.push_back(std::move(table));
 }

@@ -73,7 +73,8 @@ void check_rows(const StoredItem& item, ReportContext& context) {
             ++failed;
             continue;
         }
-        residual = std::max(residual, row.residual_max);
+        // What is no number fails the check.
+        residual = std::max(residual, std::isnan(row.residual_max) ? INFINITY : row.residual_max);
         gauss_bonnet = std::fmax(gauss_bonnet, row.gauss_bonnet_error);
         extended += row.precision_digits > 16 ? 1 : 0;
     }
@@ -99,7 +100,7 @@ void add_histogram(const StoredSweep& sweep, ItemReport& out, ReportPage& page) 
     const Axis axis(*low, *high, logarithmic ? ScaleKind::logarithmic : ScaleKind::linear);
     const SvgPicture picture = draw_histogram(
         count_values(values, axis, 60), std::nullopt,
-        {"Area distortion over all cones", "area distortion (mean squared log ratio)", "vertices", ""});
+        {"Area distortion over the cones tried", "area distortion (mean squared log ratio)", "vertices", ""});
     out.figures.push_back(
         {page.make_figure("", picture, "How many vertices are how good as the only cone.")});
 }
@@ -167,27 +168,39 @@ void add_layouts(const StoredItem& item, const SurfaceMesh& mesh, ReportContext&
 
 }  // namespace
 
+SweepExtremes extremes_of(const StoredSweep& sweep) {
+    SweepExtremes e;
+    for (const SweepRow& row : sweep.rows) {
+        if (!converged(row) || !std::isfinite(row.area_distortion)) continue;
+        if (e.best == nullptr || row.area_distortion < e.best->area_distortion) e.best = &row;
+        if (e.worst == nullptr || row.area_distortion > e.worst->area_distortion) e.worst = &row;
+    }
+    return e;
+}
+
 void add_sweep(const StoredItem& item, const SurfaceMesh& mesh, ReportContext& context, ItemReport& out) {
     const StoredSweep& sweep = *item.sweep;
     const auto vertices = static_cast<std::size_t>(mesh.connectivity.vertex_count);
+    check_rows(item, context);
+    if (!context.draw) return;
     add_fields(item, vertices, context, out);
+    const SweepExtremes extremes = extremes_of(sweep);
+    for (const auto& [name, row] : {std::pair("best", extremes.best), std::pair("worst", extremes.worst)})
+        if (row != nullptr && !mesh.intrinsic())
+            out.scene.marks.push_back(
+                {name, row->vertex, mesh.points[static_cast<std::size_t>(row->vertex)]});
     for (const KeptFactor& kept : sweep.kept) {
         const bool best = kept.vertex == sweep.best, worst = kept.vertex == sweep.worst;
         if (!best && !worst) continue;
-        const std::string name = best ? "best" : "worst";
-        SceneField factor{fmt::format("conformal factor of {}", name),
-                          "log scale",
+        SceneField factor{fmt::format("u of {}, log of the scale factor", best ? "best" : "worst"),
+                          "",
                           kept.conformal_factor,
                           std::nullopt,
                           NumberKind::floats,
                           {}};
-        factor.colours = fitting_scale(factor.values, 0.0);
+        factor.colours = fitting_scale(factor.values, median_of(factor.values));
         out.scene.fields.push_back(std::move(factor));
-        if (!mesh.intrinsic())
-            out.scene.marks.push_back(
-                {name, kept.vertex, mesh.points[static_cast<std::size_t>(kept.vertex)]});
     }
-    check_rows(item, context);
     add_histogram(sweep, out, *context.page);
     add_layouts(item, mesh, context, out);
 }

@@ -102,6 +102,7 @@ json curve_json(const SceneCurve& curve, ByteStore& bytes) {
             {"link", curve.link},
             {"colour", hexadecimal(curve.colour)},
             {"dashed", curve.dashed},
+            {"hidden", curve.hidden},
             {"points", bytes.add(std::span<const float>(points))}};
 }
 
@@ -111,10 +112,10 @@ json mark_json(const SceneMark& mark) {
 
 }  // namespace
 
-ColourScale fitting_scale(const std::vector<double>& values, std::optional<double> middle) {
+ColourScale fitting_scale(const std::vector<double>& values, std::optional<double> middle, double smallest) {
     std::vector<double> sorted;
     for (const double v : values)
-        if (std::isfinite(v)) sorted.push_back(v);
+        if (std::abs(v) <= 1e150) sorted.push_back(v);
     if (sorted.empty()) return {Axis(0.0, 1.0), ColourMap::sequential};
     std::sort(sorted.begin(), sorted.end());
     const auto quantile = [&](double q) {
@@ -122,8 +123,10 @@ ColourScale fitting_scale(const std::vector<double>& values, std::optional<doubl
     };
     double low = sorted.front(), high = sorted.back();
     if (middle) {
-        const double reach =
-            std::max({std::abs(quantile(0.005) - *middle), std::abs(quantile(0.995) - *middle), 1e-12});
+        const double all = std::max(high - *middle, *middle - low),
+                     most = std::max(quantile(0.995) - *middle, *middle - quantile(0.005));
+        // Few values that stand out (cones) would leave all others to rounding.
+        const double reach = std::max(most > 1e-6 * all ? most : all, smallest);
         return {Axis(*middle - reach, *middle + reach), ColourMap::diverging};
     }
     const double inner_low = quantile(0.01), inner_high = quantile(0.99);
@@ -133,9 +136,18 @@ ColourScale fitting_scale(const std::vector<double>& values, std::optional<doubl
         return {Axis(low, high, ScaleKind::logarithmic), ColourMap::sequential};
     }
     const double range = inner_high - inner_low;
+    if (range == 0.0) return {Axis(low, high), ColourMap::sequential};
     if (high > inner_high + range) high = inner_high;
     if (low < inner_low - range) low = inner_low;
     return {Axis(low, high), ColourMap::sequential};
+}
+
+double median_of(std::vector<double> values) {
+    std::erase_if(values, [](double v) { return !std::isfinite(v); });
+    if (values.empty()) return 0.0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
 }
 
 std::optional<SceneTexture> layout_texture(const std::string& name, const StoredLayout& stored) {
@@ -168,6 +180,7 @@ json scene_json(const Scene& scene, ByteStore& bytes) {
                    {"high", box.high},
                    {"faces", scene.mesh.faces},
                    {"decimated", scene.mesh.decimated},
+                   {"shown", scene.mesh.shown},
                    {"points", bytes.add(std::span<const std::uint16_t>(points))},
                    {"triangles", indices_json(scene.mesh.triangles, scene.mesh.points.size(), bytes)},
                    {"vertex", bytes.add(std::span<const Index>(scene.mesh.vertex))},

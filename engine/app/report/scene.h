@@ -27,8 +27,11 @@ struct SceneField {
 
 /// A scale that fits the values: logarithmic where they are positive and span more than a factor of 10, its
 /// ends at the 1 % and 99 % quantiles where few values lie far beyond; `middle`: diverging and symmetric
-/// about it.
-ColourScale fitting_scale(const std::vector<double>& values, std::optional<double> middle = std::nullopt);
+/// about it, and at least `smallest` to either side, so that rounding is not given all colours.
+ColourScale fitting_scale(const std::vector<double>& values, std::optional<double> middle = std::nullopt,
+                          double smallest = 1e-12);
+/// Of the finite values; 0 without any.
+double median_of(std::vector<double> values);
 
 /// A polyline on the surface. Curves and pictures of the page that have the same link are shown together.
 struct SceneCurve {
@@ -36,6 +39,7 @@ struct SceneCurve {
     Colour colour;
     bool dashed = false;
     std::vector<Point> points;
+    bool hidden = false;  // until it is asked for
 };
 
 struct SceneMark {

@@ -35,12 +35,22 @@ ViewMesh make_view_mesh(const SurfaceMesh& mesh, Index budget) {
     view.decimated = view.faces > budget;
     if (!view.decimated) {
         take_used(mesh, view);
+        view.shown = view.points.size();
         return view;
     }
     take_used(decimate(mesh, budget), view);
     view.decimated = static_cast<Index>(view.triangles.size()) < view.faces;
     view.vertex = nearest_vertices(mesh, view.points);
+    view.shown = view.points.size();
     return view;
+}
+
+void add_vertices(ViewMesh& view, const SurfaceMesh& mesh, const std::vector<Index>& vertices) {
+    if (!view.decimated) return;
+    for (const Index v : vertices) {
+        view.points.push_back(mesh.points[at(v)]);
+        view.vertex.push_back(v);
+    }
 }
 
 std::vector<double> seen_values(const ViewMesh& view, const std::vector<double>& values) {

@@ -18,10 +18,7 @@
 
     // Six digits, as the tables have them.
     function numberText(x) {
-        if (!Number.isFinite(x)) return '\u2013';
-        if (Number.isInteger(x) && Math.abs(x) < 1e9) return String(x);
-        const size = Math.abs(x);
-        return size !== 0 && (size < 1e-4 || size >= 1e6) ? x.toExponential(5).replace('e+', 'e') : String(Number(x.toPrecision(6)));
+        return Number.isFinite(x) ? String(Number(x.toPrecision(6))).replace('e+', 'e') : '\u2013';
     }
 
     // ---- data -------------------------------------------------------------------------------------------------
@@ -85,6 +82,8 @@
             renderer.setClearColor(0xffffff, 1);
         } catch (error) {
             rendererFailed = true;
+            document.querySelector('main').prepend(element('p', { class: 'note fails', role: 'alert' },
+                'This browser has no WebGL, which the views in space and the small pictures of surfaces need: they stay empty. All else is here.'));
         }
         return renderer;
     }
@@ -229,6 +228,7 @@
                 const points = Array.from(this.data.array(curve.points));
                 if (points.length < 6) continue;
                 const line = this.line(points, curve.colour, 3.5, curve.dashed);
+                line.visible = !curve.hidden;
                 this.stage.scene.add(line);
                 this.curves.push({ curve, line });
             }
@@ -261,12 +261,12 @@
 
         buildPage() {
             const d = this.d;
-            this.canvas = element('canvas', { tabindex: 0, role: 'img', width: 640, height: 480, 'aria-label': `View of ${d.title}. Arrow keys turn it, plus and minus zoom, R resets.` });
+            this.canvas = element('canvas', { tabindex: 0, role: 'application', width: 640, height: 480, 'aria-label': `View of ${d.title}. Arrow keys turn it, plus and minus zoom, R resets.` });
             this.hint = element('span', { class: 'hint' }, 'drag to turn, click a vertex');
             this.chooser = element('select', { onchange: () => this.show(this.chooser.selectedIndex), 'aria-label': 'Colour by' },
                 ...this.layers.map((layer) => element('option', {}, layer.name)));
             this.vertexInput = element('input', { type: 'number', min: 0, step: 1, 'aria-label': 'Vertex number' });
-            const go = (event) => { event.preventDefault(); this.pickVertex(Number(this.vertexInput.value)); };
+            const go = (event) => { event.preventDefault(); if (this.vertexInput.value !== '') this.pickVertex(Number(this.vertexInput.value)); };
             const form = element('form', { onsubmit: go }, element('label', {}, 'vertex ', this.vertexInput), ' ', element('button', {}, 'show'));
             const tools = element('div', { class: 'tools' },
                 this.layers.length > 1 ? element('label', {}, 'colour by ', this.chooser) : null, form,
@@ -284,6 +284,19 @@
             this.controls.update();
             this.controls.enableKeys = false;
             this.controls.enableZoom = false;  // until it is chosen: the page must scroll
+            if (window.matchMedia('(pointer: coarse)').matches) {
+                // One finger scrolls the page until the view is asked to turn.
+                this.controls.enabled = false;
+                const turn = element('button', { type: 'button', 'aria-pressed': 'false' }, 'turn by touch');
+                turn.addEventListener('click', () => {
+                    this.controls.enabled = !this.controls.enabled;
+                    turn.setAttribute('aria-pressed', String(this.controls.enabled));
+                    this.canvas.style.touchAction = this.controls.enabled ? 'none' : 'auto';
+                });
+                tools.append(turn);
+                this.hint.textContent = 'tap a vertex';
+            }
+            new ResizeObserver(() => this.draw()).observe(this.canvas);
             this.controls.addEventListener('change', () => this.draw());
             this.canvas.addEventListener('focus', () => { this.controls.enableZoom = true; });
             this.canvas.addEventListener('blur', () => { this.controls.enableZoom = false; });
@@ -305,7 +318,7 @@
             this.curves.forEach((c) => {
                 const sample = element('i', { class: c.curve.dashed ? 'dashed' : '' });
                 sample.style.borderTopColor = c.curve.colour;
-                const button = element('button', { type: 'button', 'aria-pressed': 'true' }, sample, c.curve.name);
+                const button = element('button', { type: 'button', 'aria-pressed': String(c.line.visible) }, sample, c.curve.name);
                 button.addEventListener('click', () => {
                     c.line.visible = !c.line.visible;
                     button.setAttribute('aria-pressed', String(c.line.visible));
@@ -330,7 +343,7 @@
         show(number) {
             const layer = this.layers[number];
             this.layer = layer;
-            this.bar.replaceChildren();
+            this.bar.replaceChildren(...(layer.texture ? [element('div', { class: 'facts' }, layer.name)] : []));
             if (this.textured) this.textured.visible = false;
             if (this.dots) this.stage.scene.remove(this.dots);
             this.dots = null;
@@ -392,8 +405,13 @@
         // would say something about places that nobody looked at.
         showDots(values, colours) {
             const known = [];
-            for (let v = 0; v < values.length; ++v) if (Number.isFinite(values[v])) known.push(v);
-            if (known.length === 0 || known.length > 0.8 * values.length) return;
+            let seen = 0;
+            for (let v = 0; v < values.length; ++v)
+                if (Number.isFinite(values[v])) {
+                    if (v < this.d.shown) ++seen;
+                    if (this.d.shown === values.length || v >= this.d.shown) known.push(v);
+                }
+            if (known.length === 0 || seen > 0.8 * this.d.shown) return;
             const places = new Float32Array(3 * known.length), shades = new Float32Array(3 * known.length);
             known.forEach((v, i) => {
                 for (let k = 0; k < 3; ++k) {
@@ -446,8 +464,7 @@
             }
             this.stage.camera.aspect = width / height;
             this.stage.camera.updateProjectionMatrix();
-            if (!drawOn(this.canvas, this.stage.scene, this.stage.camera, this.lineMaterials))
-                this.hint.textContent = 'This browser has no WebGL: no view in space.';
+            drawOn(this.canvas, this.stage.scene, this.stage.camera, this.lineMaterials);
             this.figure.dataset.drawn = 'yes';
         }
 
@@ -495,13 +512,16 @@
             const p = this.points;
             const corners = [hit.face.a, hit.face.b, hit.face.c];
             const far = (v) => Math.hypot(p[3 * v] - hit.point.x, p[3 * v + 1] - hit.point.y, p[3 * v + 2] - hit.point.z);
-            corners.sort((a, b) => far(a) - far(b));
-            this.read(corners[0]);
+            let nearest = corners.sort((a, b) => far(a) - far(b))[0], least = far(nearest);
+            for (let v = this.d.shown; v < this.vertex.length; ++v)  // exact vertices of a decimated surface
+                if (far(v) < least) [least, nearest] = [far(v), v];
+            this.read(nearest);
         }
 
         // The surface's vertex, or the one of the view nearest to the point given.
         pickVertex(number, point) {
-            let found = this.vertex.indexOf(number);
+            if (!Number.isInteger(number)) return undefined;
+            let found = Math.max(this.vertex.indexOf(number), this.vertex.indexOf(number, this.d.shown));
             if (found < 0 && point) {
                 let least = Infinity;
                 for (let v = 0; v < this.vertex.length; ++v) {
@@ -520,7 +540,7 @@
             this.cursor.position.set(...p);
             this.cursor.visible = true;
             const number = this.vertex[v];
-            const rows = [[this.d.decimated ? 'nearest vertex' : 'vertex', String(number)]];
+            const rows = [[this.d.decimated && v < this.d.shown ? 'nearest vertex' : 'vertex', String(number)]];
             for (const field of this.d.fields) {
                 const value = valuesOf(this.data, field)[v];
                 if (field.words) rows.push([field.name, Number.isFinite(value) ? field.words[value] : 'no row']);
@@ -715,13 +735,18 @@
                 }
         }, { rootMargin: '600px' });
         figures.forEach((figure) => watcher.observe(figure));
-        new ResizeObserver(() => views.forEach((view) => view.draw())).observe(document.body);
         window.addEventListener('beforeprint', () => figures.forEach((figure) => { make(figure); figure.view.drawNow(); }));
     }
 
     async function start() {
         document.querySelectorAll('.tabs').forEach(makeTabs);
         document.querySelectorAll('table').forEach(makeSortable);
+        let opened = [];
+        window.addEventListener('beforeprint', () => {
+            opened = [...document.querySelectorAll('details:not([open])')];
+            for (const d of opened) d.open = true;
+        });
+        window.addEventListener('afterprint', () => { for (const d of opened) d.open = false; });
         const description = document.getElementById('ricci-data');
         if (description) {
             const buffer = await unpack(document.getElementById('ricci-bytes').textContent);
