@@ -40,6 +40,7 @@ std::uint32_t fitting(std::uint64_t number, const std::string& path) {
 }
 
 std::uint32_t checksum(std::uint32_t crc, std::string_view bytes) {
+    if (bytes.empty()) return crc;  // zlib takes a null pointer as the wish to start anew
     return static_cast<std::uint32_t>(
         crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }

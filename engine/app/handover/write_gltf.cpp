@@ -274,6 +274,7 @@ std::vector<std::string> suited_blocks(const ItemSource& source) {
             "geodesics",
             "curves",
             "loops",
+            "samples",
             "cones",
             "layout",
             "sides"};
