@@ -7,7 +7,7 @@ install(TARGETS ricci_kernels ricci_io ricci_engine EXPORT ricciTargets
     ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
 install(TARGETS ricci RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 install(DIRECTORY kernels engine io DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/ricci"
-    FILES_MATCHING PATTERN "*.h" PATTERN "engine/app" EXCLUDE)
+    FILES_MATCHING PATTERN "*.h" PATTERN "engine/app" EXCLUDE PATTERN "engine/python" EXCLUDE)
 install(EXPORT ricciTargets NAMESPACE ricci:: DESTINATION "${ricci_config_dir}")
 
 configure_package_config_file(cmake/ricciConfig.cmake.in "${PROJECT_BINARY_DIR}/ricciConfig.cmake"
