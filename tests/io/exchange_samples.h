@@ -1,23 +1,16 @@
 // A small block with every kind of array, and Python to look at files with.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <fstream>
 #include <limits>
 #include <string>
 
 #include "io/exchange/geometry_block.h"
-#include "tests/io/store_samples.h"
+#include "tests/io/python_scripts.h"
 
 namespace ricci::exchange_samples {
 
 using store_samples::TemporaryFolder;
-
-inline constexpr const char* kPython = "/usr/bin/python3";
 
 /// Two triangles and a square, with values that decimals would not keep.
 inline GeometryBlock sample_block() {
@@ -38,22 +31,8 @@ inline GeometryBlock sample_block() {
     return block;
 }
 
-/// Runs a script with arguments; its output, with the exit status in front when that is not 0.
-inline std::string run_python(const TemporaryFolder& folder, const std::string& script,
-                              const std::string& arguments) {
-    const std::string path = folder.file("script.py");
-    std::ofstream(path) << script;
-    const std::string command = fmt::format("{} {} {} 2>&1", kPython, path, arguments);
-    std::FILE* pipe = ::popen(command.c_str(), "r");
-    std::string output;
-    for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) output += static_cast<char>(c);
-    const int status = ::pclose(pipe);
-    return status == 0 ? output : fmt::format("status {}: {}", status, output);
-}
-
-inline bool has_module(const std::string& module) {
-    const std::string command = fmt::format("{} -c 'import {}' 2>/dev/null", kPython, module);
-    return std::system(command.c_str()) == 0;  // NOLINT(concurrency-mt-unsafe): one thread
-}
+using store_samples::has_module;
+using store_samples::kPython;
+using store_samples::run_python;
 
 }  // namespace ricci::exchange_samples

@@ -8,32 +8,12 @@
 #include <fstream>
 
 #include "io/store/durable.h"
-#include "tests/io/store_samples.h"
+#include "tests/io/python_scripts.h"
 
 namespace ricci {
 namespace {
 
 using namespace store_samples;
-
-constexpr const char* kPython = "/usr/bin/python3";
-
-bool has_module(const std::string& module) {
-    const std::string command = fmt::format("{} -c 'import {}' 2>/dev/null", kPython, module);
-    return std::system(command.c_str()) == 0;  // NOLINT(concurrency-mt-unsafe): one thread
-}
-
-// Runs a script with arguments; its output, with the exit status in front when that is not 0.
-std::string run_python(const TemporaryFolder& folder, const std::string& script,
-                       const std::string& arguments) {
-    const std::string path = folder.file("script.py");
-    std::ofstream(path) << script;
-    const std::string command = fmt::format("{} {} {} 2>&1", kPython, path, arguments);
-    std::FILE* pipe = ::popen(command.c_str(), "r");
-    std::string output;
-    for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) output += static_cast<char>(c);
-    const int status = ::pclose(pipe);
-    return status == 0 ? output : fmt::format("status {}: {}", status, output);
-}
 
 constexpr const char* kReadWithH5py = R"(
 import sys, h5py, numpy as np
